@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <span>
 
 #include "railtab/runtime/base/file_checksum.hpp"
@@ -80,18 +81,19 @@ void exchange_text(Archive& archive, std::string& text) {
   archive.values(text.data(), text.size());
 }
 
-void exchange_matrix(Writer& archive, Eigen::SparseMatrix<double>& matrix) {
+// By columns, or by rows.
+template <class Matrix>
+void exchange_matrix(Writer& archive, Matrix& matrix) {
   matrix.makeCompressed();
-  std::int64_t extent[2] = {matrix.rows(), matrix.nonZeros()};
-  archive.values(extent, 2);
+  std::int64_t extent[3] = {matrix.rows(), matrix.cols(), matrix.nonZeros()};
+  archive.values(extent, 3);
   archive.values(matrix.outerIndexPtr(), static_cast<std::size_t>(matrix.outerSize() + 1));
   archive.values(matrix.innerIndexPtr(), static_cast<std::size_t>(matrix.nonZeros()));
   archive.values(matrix.valuePtr(), static_cast<std::size_t>(matrix.nonZeros()));
 }
 
-// Whether rows increase within every column.
-bool are_columns(const std::vector<int>& begin, const std::vector<int>& row) {
-  const auto rows = static_cast<int>(begin.size()) - 1;
+// Whether rows increase within every column; or columns within every row.
+bool are_columns(const std::vector<int>& begin, const std::vector<int>& row, std::int64_t rows) {
   if (begin.front() != 0 || begin.back() != static_cast<int>(row.size())) return false;
   for (std::size_t j = 0; j + 1 < begin.size(); ++j) {
     if (begin[j + 1] < begin[j]) return false;
@@ -106,20 +108,23 @@ bool are_columns(const std::vector<int>& begin, const std::vector<int>& row) {
   return true;
 }
 
-void exchange_matrix(Reader& archive, Eigen::SparseMatrix<double>& matrix) {
-  std::int64_t extent[2] = {};
-  archive.values(extent, 2);
-  const auto [rows, nonzeros] = extent;
-  if (rows < 0 || nonzeros < 0) archive.fail();
-  archive.require(static_cast<std::uint64_t>(rows) + 1, sizeof(int));
+template <class Matrix>
+void exchange_matrix(Reader& archive, Matrix& matrix) {
+  constexpr std::int64_t most = std::numeric_limits<int>::max();
+  std::int64_t extent[3] = {};
+  archive.values(extent, 3);
+  const auto [rows, columns, nonzeros] = extent;
+  if (rows < 0 || columns < 0 || nonzeros < 0 || rows > most || columns > most) archive.fail();
+  const std::int64_t lists = Matrix::IsRowMajor ? rows : columns;
+  archive.require(static_cast<std::uint64_t>(lists) + 1, sizeof(int));
   archive.require(static_cast<std::uint64_t>(nonzeros), sizeof(double));
-  std::vector<int> begin(static_cast<std::size_t>(rows + 1)), row(static_cast<std::size_t>(nonzeros));
+  std::vector<int> begin(static_cast<std::size_t>(lists + 1)), row(static_cast<std::size_t>(nonzeros));
   std::vector<double> value(static_cast<std::size_t>(nonzeros));
   archive.values(begin.data(), begin.size());
   archive.values(row.data(), row.size());
   archive.values(value.data(), value.size());
-  if (!are_columns(begin, row)) archive.fail();
-  matrix = Eigen::Map<const Eigen::SparseMatrix<double>>(rows, rows, nonzeros, begin.data(), row.data(), value.data());
+  if (!are_columns(begin, row, Matrix::IsRowMajor ? columns : rows)) archive.fail();
+  matrix = Eigen::Map<const Matrix>(rows, columns, nonzeros, begin.data(), row.data(), value.data());
 }
 
 // All members in their order, into or out of an archive.
@@ -145,6 +150,7 @@ void exchange(Archive& archive, DrivenTrack& track) {
     archive.values(&node.x, 1);
     archive.values(node.dof.data(), node.dof.size());
   }
+  exchange_matrix(archive, structure.summed_nodes);
   exchange_list(archive, structure.dof_x);
   exchange_list(archive, structure.dof_line);
   exchange_list(archive, structure.dof_node);
@@ -184,8 +190,12 @@ bool is_consistent(const DrivenTrack& track) {
   const StructureModel& s = track.structure;
   const int n = s.dofs();
   constexpr double smallest_alpha = -1.0 / 3.0;
-  bool fits = n > 0 && s.damping.rows() == n && s.stiffness.rows() == n && !track.wheelset_x.empty() &&
-              (s.dof_x.empty() || s.dof_x.size() == static_cast<std::size_t>(n)) &&
+  const auto square = [n](const Eigen::SparseMatrix<double>& m) { return m.rows() == n && m.cols() == n; };
+  const auto& sums = s.summed_nodes;
+  const bool summed =
+      sums.size() == 0 || (sums.rows() == static_cast<Eigen::Index>(6 * s.nodes.size()) && sums.cols() == n);
+  bool fits = n > 0 && square(s.mass) && square(s.damping) && square(s.stiffness) && summed &&
+              !track.wheelset_x.empty() && (s.dof_x.empty() || s.dof_x.size() == static_cast<std::size_t>(n)) &&
               s.dof_line.size() == s.dof_x.size() && are_nodes(s.dof_node, n) && track.scheme.time_step > 0.0 &&
               track.scheme.alpha >= smallest_alpha && track.scheme.alpha <= 0.0;
   for (const RailLine& rail : s.rail) {

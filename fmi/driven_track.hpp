@@ -15,7 +15,7 @@ struct DrivenTrack {
   std::string name;                ///< of the scene
   HhtScheme scheme;                ///< with ContactForceRule::endpoint
   std::vector<double> wheelset_x;  ///< along the track, front first [m]
-  StructureModel structure;        ///< matrices, rails, nodes with names, places of the unknowns; nothing else of it
+  StructureModel structure;        ///< matrices, rails, nodes with names and sums, places of the unknowns; nothing else
 };
 
 /// The content of resources/track: railtab's version, and all members in a fixed order.

@@ -11,8 +11,6 @@
 namespace railtab::fmi {
 namespace {
 
-double entry(const Eigen::VectorXd& dofs, int dof) { return dof == held ? 0.0 : dofs[dof]; }
-
 // Steps of `time_step` in `length`; 0 where it is no multiple of it.
 long steps_in(double length, double time_step) {
   constexpr double most = 1e9, relative = 1e-6, part_of_a_step = 1e-3;
@@ -134,8 +132,8 @@ double TrackSimulation::value(std::size_t variable) const {
   }
   const std::size_t of_nodes = output - outputs_per_wheel * loads_.size(), k = of_nodes % outputs_per_node;
   constexpr std::size_t y = 1;
-  const int dof = track_.structure.nodes[of_nodes / outputs_per_node].dof[y + k % 2];
-  return entry(k < 2 ? motion.displacement : motion.acceleration, dof);
+  return node_motion(track_.structure, of_nodes / outputs_per_node, y + k % 2,
+                     k < 2 ? motion.displacement : motion.acceleration);
 }
 
 void TrackSimulation::set_state(const TrackState& state) {

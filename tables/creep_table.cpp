@@ -130,6 +130,7 @@ CreepTable::CreepTable(CreepTableData data) : data_(std::move(data)) {
   }
   require_smooth_layout(data_);
   spline_ = std::make_unique<const CreepSpline>(data_);
+  data_.values = std::vector<double>();  // `= {}` would keep the memory
   axes_.clear();
 }
 

@@ -79,6 +79,7 @@ class CreepTable {
   [[nodiscard]] CreepLookupOf<WheelLanes> jet(const WheelLanes& ratio,
                                               const std::array<WheelLanes, 3>& creepage) const noexcept;
 
+  /// Of the smooth layout without `values`, in whose place look-ups use the spline's coefficients.
   [[nodiscard]] const CreepTableData& data() const noexcept { return data_; }
   /// Memory that look-ups use [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "railtab/runtime/base/input_error.hpp"
 
@@ -142,6 +143,7 @@ void GeometryTable::pack() {
   }
   line_.resize(data_.coefficient.size() / 16);
   for (std::size_t n = 0; n < data_.coefficient.size(); ++n) line_[n / 16].value[n % 16] = data_.coefficient[n];
+  data_.coefficient = std::vector<float>();  // `= {}` would keep the memory
 }
 
 /// The leaf below a halved root cell.
@@ -179,6 +181,17 @@ GeometryTable::Lookup GeometryTable::lookup(double y, double z, double yaw, doub
   return result;
 }
 
+std::span<const float> GeometryTable::coefficients() const noexcept {
+  static_assert(sizeof(Line) == sizeof(Line::value), "lines stand without gaps");
+  return {reinterpret_cast<const float*>(line_.data()), 16 * line_.size()};
+}
+
 std::size_t GeometryTable::bytes() const noexcept { return node_.size() * sizeof(Node) + line_.size() * sizeof(Line); }
+
+std::size_t GeometryTable::bytes_of(const GeometryTableData& data) noexcept {
+  const std::size_t branches = std::accumulate(data.leaf_branch.begin(), data.leaf_branch.end(), std::size_t{0});
+  const int numbers = branch_terms(!data.yaw_squared.fixed(), !data.roll.fixed()) * branch_quantities;
+  return data.node.size() * sizeof(Node) + branches * static_cast<std::size_t>(numbers) * sizeof(float);
+}
 
 }  // namespace railtab

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,9 +109,14 @@ class GeometryTable {
   /// The branches of the leaf of (y, yaw, roll), with their starts for a wheel whose centre is at height z [m].
   [[nodiscard]] Lookup lookup(double y, double z, double yaw, double roll) const noexcept;
 
+  /// Without `coefficient`, which coefficients() has.
   [[nodiscard]] const GeometryTableData& data() const noexcept { return data_; }
+  /// GeometryTableData::coefficient.
+  [[nodiscard]] std::span<const float> coefficients() const noexcept;
   /// Memory that look-ups use [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
+  /// The same of the table that these data, with or without coefficients, would make.
+  [[nodiscard]] static std::size_t bytes_of(const GeometryTableData& data) noexcept;
 
  private:
   // As in the data, but a leaf's node holds the number of its branches in four bits and the first of them in 26.

@@ -7,7 +7,6 @@
 #include "railtab/runtime/assessment/clause.hpp"
 #include "railtab/runtime/assessment/measure_kind.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 
@@ -144,7 +143,7 @@ std::vector<Clause> library_clauses() {
 std::vector<Clause> clauses_with(const std::vector<std::filesystem::path>& files) {
   std::vector<Clause> clauses = library_clauses();
   for (const std::filesystem::path& file : files) {
-    const toml::table table = parse_toml(read_toml_text(file, "a TOML file of clauses"), file);
+    const toml::table table = read_toml(file, "a TOML file of clauses");
     check_toml_kind(table, file, TomlKind::clauses);
     read_clauses(table, file, clauses);
   }

@@ -56,7 +56,7 @@ DynamicNeedResult dynamic_need(double line_speed, double span, double first_freq
             fmt::format("the limits of the first frequency end at spans of {:g} and {:g} m", shortest, longest)};
   }
   const double low = lower_frequency_limit(span), high = upper_frequency_limit(span);
-  const bool within = first_frequency >= low && first_frequency <= high;
+  const bool within = first_frequency >= low * (1.0 - rounding) && first_frequency <= high * (1.0 + rounding);
   const std::string where = fmt::format("first frequency {:.3f} Hz {} {:.3f} to {:.3f} Hz", first_frequency,
                                         within ? "within" : "outside", low, high);
   if (slow) {

@@ -65,7 +65,8 @@ std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
                                    const std::vector<MeasuredValue>& values, const std::vector<MissingMeasure>& missing,
                                    Unjudged& unjudged) {
   Verdict verdict{&clause, stage, Outcome::pass, {}, 0.0, {}};
-  const auto failing = [](const Verdict& v) { return v.at && v.utilisation() > 1.0; };
+  constexpr double rounding = 1e-9;
+  const auto failing = [](const Verdict& v) { return v.at && v.utilisation() > 1.0 + rounding; };
   Verdict overestimated = verdict;
   std::string lacking;
   for (const MeasuredValue& value : values) {
@@ -81,9 +82,11 @@ std::optional<Verdict> judge_stage(const Clause& clause, AssessmentStage stage,
     }
     const std::optional<double> limit = limit_for(clause, value);
     if (!limit || !std::isfinite(*limit) || !std::isfinite(value.value)) {
-      lacking = !limit                   ? fmt::format("{} of {} is not known", clause.limit.of, value.where)
-                : !std::isfinite(*limit) ? fmt::format("the limit of {} is not a number", value.where)
-                                         : fmt::format("the value of {} is not a number", value.where);
+      const std::string& why = value.limits_unknown;
+      lacking =
+          !limit ? fmt::format("{} of {} is not known{}{}", clause.limit.of, value.where, why.empty() ? "" : ": ", why)
+          : !std::isfinite(*limit) ? fmt::format("the limit of {} is not a number", value.where)
+                                   : fmt::format("the value of {} is not a number", value.where);
       continue;
     }
     Verdict next = verdict;

@@ -25,7 +25,8 @@ struct MeasuredValue {
   std::string run;              ///< name of the run's files; empty: none
   /// What limits depend on: span [m], axle_load, static_wheel_load [N], nadal_limit, weinstock_limit, fra_limit.
   std::map<std::string, double, std::less<>> quantities;
-  std::string overestimated;  ///< why the true value is smaller; empty: it is not known to be. It cannot fail a clause
+  std::string overestimated;   ///< why the true value is smaller; empty: it is not known to be. It cannot fail a clause
+  std::string limits_unknown;  ///< why it carries none of the limits of a flange; empty: it does, or is about no flange
 };
 
 /// What clauses are chosen by.
@@ -66,7 +67,8 @@ struct Verdict {
 
 /// All clauses against all values: a verdict per clause and stage that has values for it, one "not judged" where none
 /// has. A value whose measure is only partly known fails or is not judged, one that is overestimated passes or is not
-/// judged; so is what carries no span or other quantity that the clause asks for, or is not a number.
+/// judged; so is what carries no span or other quantity that the clause asks for, or is not a number. A limit is met by
+/// values beyond it by rounding alone, 1e-9 of it.
 /// @param clauses outlive the verdicts
 [[nodiscard]] std::vector<Verdict> judge(const std::vector<Clause>& clauses, const AssessmentFacts& facts,
                                          const std::vector<MeasuredValue>& values,

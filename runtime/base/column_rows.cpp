@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "railtab/runtime/base/file_signatures.hpp"
-
 namespace railtab {
 
 namespace {
@@ -55,9 +53,7 @@ bool ColumnRows::next() {
 
 bool ColumnRows::next_row() {
   while (reader_.next()) {
-    std::string_view text = reader_.line();
-    if (reader_.line_number() == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    text = stripped(text);
+    const std::string_view text = stripped(reader_.line());
     if (text.empty() || text.front() == '#') continue;
     cut_cells(text, cells_);
     return true;

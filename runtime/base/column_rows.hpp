@@ -10,8 +10,8 @@
 
 namespace railtab {
 
-/// Rows of cells between commas under one header row, the form of all text tables that railtab reads. Empty lines,
-/// lines that begin with # and a byte order mark are skipped; blanks around a cell do not belong to it.
+/// Rows of cells between commas under one header row, the form of all text tables that railtab reads. Empty lines
+/// and lines that begin with # are skipped; blanks around a cell do not belong to it.
 class ColumnRows {
  public:
   /// Reads the header row. @param kind of file, for messages @throws InputError where there is no readable file

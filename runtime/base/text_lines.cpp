@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "railtab/runtime/base/file_signatures.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 
 namespace railtab {
@@ -61,7 +62,7 @@ LineReader::LineReader(const std::filesystem::path& file, std::string_view kind)
 
 bool LineReader::next() {
   if (std::getline(stream_, line_)) {
-    ++count_;
+    if (++count_ == 1 && line_.starts_with(byte_order_mark)) line_.erase(0, byte_order_mark.size());
     return true;
   }
   if (stream_.bad()) throw file_error("a read error", "a readable text file");

@@ -37,7 +37,7 @@ template <class Number>
   return error == std::errc{} && stop == word.data() + word.size();
 }
 
-/// A text file, line by line, that knows where it is.
+/// A text file, line by line, that knows where it is. A byte order mark before the first line is skipped.
 class LineReader {
  public:
   /// @throws InputError where there is no readable file

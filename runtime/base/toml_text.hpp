@@ -14,8 +14,9 @@ struct TomlBounds {
   static constexpr int depth = 16;                ///< arrays and inline tables within each other
 };
 
-/// The text of a TOML file within TomlBounds. @param what  the file is, for messages ("a TOML scene")
-/// @throws InputError naming file and line where it exceeds a bound, and where there is no such file
+/// The text of a TOML file within TomlBounds::bytes; check_toml_bounds() checks the other bounds before it is parsed.
+/// @param what  the file is, for messages ("a TOML scene")
+/// @throws InputError naming the file where it is larger, is no text, or does not exist
 [[nodiscard]] std::string read_toml_text(const std::filesystem::path& file, std::string_view what);
 
 /// @throws InputError naming `file` and the line at which `text` exceeds TomlBounds::key_parts or depth

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -49,7 +50,9 @@ constexpr double same_pair = 5e-6;
 
 /// Largest vertical height per unit of normal distance on any branch, 1/n_z, from the slope of z_touch along the
 /// lateral axis in the middle of its leaf.
-double steepest_branch(const GeometryTableData& data) {
+double steepest_branch(const GeometryTable& table) {
+  const GeometryTableData& data = table.data();
+  const std::span<const float> coefficients = table.coefficients();
   const int terms = branch_terms(!data.yaw_squared.fixed(), !data.roll.fixed());
   const int linear_term = terms == 4 ? 1 : 3;
   std::vector<std::size_t> first(data.leaf_branch.size() + 1, 0);
@@ -66,7 +69,7 @@ double steepest_branch(const GeometryTableData& data) {
     }
     for (std::size_t branch = first[index]; branch < first[index + 1]; ++branch) {
       const auto place = branch_quantities * (branch * static_cast<std::size_t>(terms) + linear_term);
-      steepest = std::max(steepest, std::abs(static_cast<double>(data.coefficient[place])) / half_width[n]);
+      steepest = std::max(steepest, std::abs(static_cast<double>(coefficients[place])) / half_width[n]);
     }
   }
   constexpr double off_middle = 1.1;  // it is a little steeper elsewhere in the leaf
@@ -77,7 +80,7 @@ double steepest_branch(const GeometryTableData& data) {
 }  // namespace
 
 TableContact::TableContact(GeometryTable table)
-    : table_(std::move(table)), search_(pair_of(table_.data())), steepest_(steepest_branch(table_.data())) {}
+    : table_(std::move(table)), search_(pair_of(table_.data())), steepest_(steepest_branch(table_)) {}
 
 [[gnu::flatten]] ContactPatches TableContact::patches(const WheelsetPose& pose, double near_miss) const noexcept {
   ContactPatches result;

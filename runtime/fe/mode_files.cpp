@@ -44,7 +44,7 @@ std::vector<FeMode> read_mode_table(const std::filesystem::path& file) {
     const std::string& place = table.places[i];
     FeMode mode{whole(row[0], place, "mode"), between(row[1], 1e-3, 1e5, place, "frequency", " Hz"),
                 between(row[2], 1e-12, 1e15, place, "modal mass", ", in the model's unit of mass")};
-    if (damped) mode.damping = between(row[3], 0.0, 0.99, place, "damping ratio", " of critical");
+    if (damped) mode.damping = between(row[3], 0.0, most_damping_ratio, place, "damping ratio", " of critical");
     const auto [first, is_new] = known.emplace(mode.number, place);
     if (!is_new) {
       throw input_error(place, fmt::format("mode {} again", mode.number), "each once, first in " + first->second);

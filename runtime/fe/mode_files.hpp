@@ -11,12 +11,15 @@
 
 namespace railtab {
 
+/// Largest damping ratio of a mode: modes near critical damping and beyond do not vibrate.
+inline constexpr double most_damping_ratio = 0.99;
+
 /// One natural mode, as programs list them.
 struct FeMode {
   int number = 0;          ///< the program's
   double frequency = 0.0;  ///< [Hz], > 0
   double mass = 0.0;       ///< modal mass in the model's unit, that of the shapes' normalisation, > 0
-  double damping = -1.0;   ///< of critical, 0 <= … < 1; -1: the table has no column of it
+  double damping = -1.0;   ///< of critical, 0 to most_damping_ratio; -1: the table has no column of it
 };
 
 /// Modes from a table with the columns mode, frequency, mass and perhaps damping, by rising frequency.

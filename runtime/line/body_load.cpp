@@ -9,6 +9,7 @@
 
 #include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/linear_interpolation.hpp"
 
 namespace railtab {
 
@@ -26,14 +27,7 @@ LoadHistory::LoadHistory(LoadArgument argument, std::vector<double> points, std:
   }
 }
 
-ForceAndMoment LoadHistory::at(double point) const noexcept {
-  const auto after = std::upper_bound(points_.begin(), points_.end(), point);
-  if (after == points_.begin()) return loads_.front();
-  if (after == points_.end()) return loads_.back();
-  const auto i = static_cast<std::size_t>(after - points_.begin()) - 1;
-  const double part = (point - points_[i]) / (points_[i + 1] - points_[i]);
-  return (1.0 - part) * loads_[i] + part * loads_[i + 1];
-}
+ForceAndMoment LoadHistory::at(double point) const noexcept { return interpolate(points_, loads_, point); }
 
 Eigen::Array<bool, 6, 1> LoadHistory::acting() const noexcept {
   Eigen::Array<bool, 6, 1> result = Eigen::Array<bool, 6, 1>::Constant(false);
@@ -82,17 +76,22 @@ std::vector<LoadHistory::Pulse> LoadHistory::pulses() const {
   return result;
 }
 
-LoadHistory gust_history(const ForceAndMoment& peak, double start, double duration) {
+GustShape one_minus_cosine(double start, double duration) {
   constexpr int lines = 400;  // (2π/lines)²/16 of the peak is the largest distance of a chord
-  std::vector<double> points;
-  std::vector<ForceAndMoment> loads;
+  GustShape gust;
   for (int i = 0; i <= lines; ++i) {
     const double part = static_cast<double>(i) / lines;
-    points.push_back(start + part * duration);
-    loads.emplace_back(0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * part)) * peak);
+    gust.points.push_back(start + part * duration);
+    gust.share.push_back(i == lines ? 0.0 : 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * part)));
   }
-  loads.back().setZero();
-  return {LoadArgument::time, std::move(points), std::move(loads)};
+  return gust;
+}
+
+LoadHistory gust_history(const ForceAndMoment& peak, double start, double duration) {
+  GustShape gust = one_minus_cosine(start, duration);
+  std::vector<ForceAndMoment> loads;
+  for (const double share : gust.share) loads.emplace_back(share * peak);
+  return {LoadArgument::time, std::move(gust.points), std::move(loads)};
 }
 
 LoadHistory read_load_history(const std::filesystem::path& file, double start) {

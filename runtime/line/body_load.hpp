@@ -44,9 +44,14 @@ class LoadHistory {
   std::vector<ForceAndMoment> loads_;
 };
 
-/// One-minus-cosine gust over time: load·(1 − cos(2π(t − start)/duration))/2 within the duration, zero outside; as
-/// straight lines between points that are nowhere farther off than 2e-5 of the peak.
+/// A one-minus-cosine gust over time: of its peak the share (1 − cos(2π(t − start)/duration))/2 within the duration,
+/// zero outside; as straight lines that are nowhere farther off than 2e-5.
+struct GustShape {
+  std::vector<double> points, share;  ///< [s], 0 to 1
+};
 /// @pre duration > 0
+[[nodiscard]] GustShape one_minus_cosine(double start, double duration);
+/// A load that rises and falls with one_minus_cosine().
 [[nodiscard]] LoadHistory gust_history(const ForceAndMoment& peak, double start, double duration);
 
 /// Read a load history: first column t[s] or x[m], then any of Fx, Fy, Fz in [N] or [kN] and Mx, My, Mz in [N m] or

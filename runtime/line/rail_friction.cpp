@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/linear_interpolation.hpp"
 
 namespace railtab {
 namespace {
@@ -43,11 +44,11 @@ RailFriction::RailFriction(std::vector<double> x, std::vector<double> left, std:
 
 double RailFriction::at(RailSide side, double x) const noexcept {
   const std::vector<double>& value = value_[static_cast<std::size_t>(side)];
-  if (x <= x_.front()) return value.front();
-  if (x >= x_.back()) return value.back();
-  const auto i = static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin());
-  const double share = (x - x_[i - 1]) / (x_[i] - x_[i - 1]);
-  return value[i - 1] + share * (value[i] - value[i - 1]);
+  return interpolate(x_, value, x);
+}
+
+double RailFriction::largest() const noexcept {
+  return std::max(std::ranges::max(value_[0]), std::ranges::max(value_[1]));
 }
 
 RailFriction read_rail_friction(const std::filesystem::path& file) {

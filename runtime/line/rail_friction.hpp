@@ -17,6 +17,7 @@ class RailFriction {
   RailFriction(std::vector<double> x, std::vector<double> left, std::vector<double> right);
 
   [[nodiscard]] double at(RailSide side, double x) const noexcept;
+  [[nodiscard]] double largest() const noexcept;                      ///< of both rails
   [[nodiscard]] double begin() const noexcept { return x_.front(); }  ///< first and last point [m]
   [[nodiscard]] double end() const noexcept { return x_.back(); }
 

@@ -9,6 +9,7 @@
 
 #include "railtab/runtime/base/column_file.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/linear_interpolation.hpp"
 
 namespace railtab {
 namespace {
@@ -69,13 +70,7 @@ ForceAndMoment mirrored(ForceAndMoment load) {
 
 }  // namespace
 
-ForceAndMoment Aerodynamics::at(double angle) const noexcept {
-  const auto after = std::upper_bound(yaw.begin(), yaw.end(), angle);
-  if (after == yaw.end()) return coefficient.back();
-  const auto i = static_cast<std::size_t>(after - yaw.begin());
-  const double share = (angle - yaw[i - 1]) / (yaw[i] - yaw[i - 1]);
-  return (1.0 - share) * coefficient[i - 1] + share * coefficient[i];
-}
+ForceAndMoment Aerodynamics::at(double angle) const noexcept { return interpolate(yaw, coefficient, angle); }
 
 Aerodynamics read_aerodynamics(const std::filesystem::path& file) {
   constexpr std::array<std::string_view, 6> names{"", "C_Fy", "C_Fz", "C_Mx", "C_My", "C_Mz"};
@@ -156,29 +151,17 @@ WindHistory read_wind_history(const std::filesystem::path& file, double start) {
 
 WindHistory with_points(WindHistory history, const std::vector<double>& at) {
   const std::vector<double> points = history.points, speed = history.speed;
-  const auto speed_at = [&](double point) {
-    const auto after = std::upper_bound(points.begin(), points.end(), point);
-    if (after == points.begin()) return speed.front();
-    if (after == points.end()) return speed.back();
-    const auto i = static_cast<std::size_t>(after - points.begin());
-    return speed[i - 1] + (point - points[i - 1]) / (points[i] - points[i - 1]) * (speed[i] - speed[i - 1]);
-  };
   history.points.clear();
   std::set_union(points.begin(), points.end(), at.begin(), at.end(), std::back_inserter(history.points));
   history.speed.clear();
-  for (const double point : history.points) history.speed.push_back(speed_at(point));
+  for (const double point : history.points) history.speed.push_back(interpolate(points, speed, point));
   return history;
 }
 
 WindHistory wind_gust(double peak, double start, double duration) {
-  constexpr int lines = 400;
-  WindHistory gust;
-  for (int i = 0; i <= lines; ++i) {
-    const double part = static_cast<double>(i) / lines;
-    gust.points.push_back(start + part * duration);
-    gust.speed.push_back(i == lines ? 0.0 : 0.5 * peak * (1.0 - std::cos(2.0 * std::numbers::pi * part)));
-  }
-  return gust;
+  GustShape gust = one_minus_cosine(start, duration);
+  for (double& share : gust.share) share *= peak;
+  return {LoadArgument::time, std::move(gust.points), std::move(gust.share)};
 }
 
 LoadHistory wind_load_history(const Aerodynamics& vehicle, const Wind& wind, const WindHistory& history,

@@ -53,7 +53,7 @@ struct WindHistory {
 [[nodiscard]] WindHistory read_wind_history(const std::filesystem::path& file, double start = 0.0);
 /// The same history with points at these times or positions too. @param at increasing
 [[nodiscard]] WindHistory with_points(WindHistory history, const std::vector<double>& at);
-/// One-minus-cosine gust over time. @pre duration > 0
+/// A speed that rises and falls with one_minus_cosine().
 [[nodiscard]] WindHistory wind_gust(double peak, double start, double duration);
 
 /// The load of a history of wind, as straight lines that are off by at most 1e-4 of the largest load.

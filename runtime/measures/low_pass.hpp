@@ -45,10 +45,11 @@ struct LowPassSum {
 /// @pre as ZeroPhaseLowPass
 [[nodiscard]] LowPassSum low_pass_sum(double cut_off, double step);
 
-/// Whether samples `step` [s] apart are near enough for a cut-off [Hz].
+/// Whether samples `step` [s] apart are near enough for a cut-off [Hz], and the longest such step.
 [[nodiscard]] constexpr bool samples_fast_enough(double cut_off, double step) noexcept {
   return cut_off * step <= 0.25;
 }
+[[nodiscard]] constexpr double longest_low_pass_step(double cut_off) noexcept { return 0.25 / cut_off; }
 
 /// A whole series. @pre as ZeroPhaseLowPass
 [[nodiscard]] std::vector<double> low_passed(const std::vector<double>& samples, double cut_off, double step);

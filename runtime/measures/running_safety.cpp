@@ -25,7 +25,13 @@ void Unloading::add(double time, double Q, double Q0) noexcept {
   const bool above = value > limit_, was_above = any_ && last_ > limit_;
   const auto crossing = [&] { return last_time_ + (time - last_time_) * (limit_ - last_) / (value - last_); };
   if (above && !was_above) since_ = any_ ? crossing() : time;
-  if (was_above) longest_ = std::max(longest_, (above ? time : crossing()) - since_);
+  if (was_above) {
+    const double lasting = (above ? time : crossing()) - since_;
+    if (lasting > longest_) {
+      longest_ = lasting;
+      begin_ = since_;
+    }
+  }
   any_ = true;
   last_ = value;
   last_time_ = time;

@@ -20,9 +20,10 @@ class Unloading {
   [[nodiscard]] double largest() const noexcept { return largest_; }        ///< [-]
   [[nodiscard]] double time() const noexcept { return time_; }              ///< of the largest [s]
   [[nodiscard]] double longest_above() const noexcept { return longest_; }  ///< [s]
+  [[nodiscard]] double longest_begin() const noexcept { return begin_; }    ///< when that began [s]; 0: never above
 
  private:
-  double limit_, largest_ = -1e300, time_ = 0.0, longest_ = 0.0;
+  double limit_, largest_ = -1e300, time_ = 0.0, longest_ = 0.0, begin_ = 0.0;
   double last_time_ = 0.0, last_ = 0.0, since_ = 0.0;
   bool any_ = false;
 };

@@ -31,8 +31,17 @@ inline constexpr Weighting weighting_d{0.4, 100.0, 2.0, 2.0, 0.63, 0.0, 0.0, 0.0
 inline constexpr Weighting weighting_k{0.4,  100.0, 12.5, 12.5, 0.63,
                                        2.37, 0.91,  3.35, 0.91, (2.37 / 3.35) * (2.37 / 3.35)};
 
-/// A weighted series, sample by sample, causal. Within 0.01 of the gain of (FM2) for steps up to 1 ms and frequencies
-/// up to 100 Hz. The series counts as zero before its first sample.
+inline constexpr double longest_weighted_step = 2e-3;  ///< between samples [s]
+
+/// Whether samples `step` [s] apart are near enough for the weightings.
+[[nodiscard]] constexpr bool samples_fast_enough_to_weight(double step) noexcept {
+  constexpr double rounding = 1e-6;
+  return step <= longest_weighted_step * (1.0 + rounding);
+}
+
+/// A weighted series, sample by sample, causal. Within 0.01 of the gain of (FM2) for frequencies up to 100 Hz. The
+/// series counts as zero before its first sample.
+/// @pre samples_fast_enough_to_weight(step): longer steps change the gain at all frequencies
 class WeightedSeries {
  public:
   WeightedSeries(const Weighting& weighting, double step) : sum_(weighting.terms(), step), step_(step) {}

@@ -4,12 +4,12 @@
 
 namespace railtab {
 
-/// The first and the third mode that bend a deck under its axles, or the last of fewer: those that move the line of the
-/// axles by a tenth at least of their largest displacement. Twist about the line and lateral bending do not.
+/// The first and the third mode that bend a deck, or the last of fewer: those in which the mean over the deck's width
+/// moves vertically by a third at least of the largest displacement. Twist and lateral bending do not.
 struct BendingModes {
   int first = 0, third = 0;
 };
-/// @param share of each mode: its largest vertical motion on the line over its largest displacement anywhere [-]
+/// @param share of each mode: the largest vertical motion, mean over the width, over its largest displacement anywhere
 [[nodiscard]] BendingModes bending_modes(const Eigen::ArrayXd& share);
 
 /// @param omega rising [rad/s]

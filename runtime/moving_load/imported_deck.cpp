@@ -34,16 +34,53 @@ Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis,
   return motion;
 }
 
-/// The largest vertical motion of each mode on the line, over its largest displacement anywhere, that of
-/// rotations at half the width of the track.
-Eigen::ArrayXd share_on_line(const FeStructure& structure, const DeckFunction& deck, const ModalBasis& basis,
-                             double begin, double end) {
-  constexpr int points = 49;
-  Eigen::ArrayXd largest = Eigen::ArrayXd::Zero(basis.shape.cols());
-  for (int i = 0; i < points; ++i) {
-    const double x = begin + (end - begin) * (i + 0.5) / points;
-    largest = largest.max(on_centre_line(deck, basis, x).abs());
+/// Vertical motion of the modes, mean over the width of the deck at places along it: places × modes. Twist about the
+/// middle has none, wherever the track lies.
+Eigen::MatrixXd mean_over_width(const FeStructure& structure, const std::vector<int>& deck, const ModalBasis& basis) {
+  const auto motion = [&](const DofSum& sum) {
+    Eigen::RowVectorXd of_modes = Eigen::RowVectorXd::Zero(basis.shape.cols());
+    for (const auto& [row, share] : sum) {
+      if (row >= 0) of_modes += share * basis.shape.row(row);  // supports are at rest
+    }
+    return of_modes;
+  };
+  if (!is_surface(structure, deck)) {
+    Eigen::MatrixXd result(static_cast<Eigen::Index>(deck.size()), basis.shape.cols());
+    for (std::size_t k = 0; k < deck.size(); ++k) {
+      result.row(static_cast<Eigen::Index>(k)) = motion(node_motion(structure.nodes.at(deck[k]), z_dof));
+    }
+    return result;
   }
+  constexpr int along = 49, across = 9;
+  double low = INFINITY, high = -INFINITY;
+  std::vector<Eigen::Vector2d> places;
+  for (const int number : deck) {
+    places.emplace_back(structure.nodes.at(number).position.head<2>());
+    low = std::min(low, places.back().y());
+    high = std::max(high, places.back().y());
+  }
+  const DeckOutline outline(std::move(places));
+  const SurfaceMotion surface = surface_motion(structure, deck);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(along, basis.shape.cols());
+  for (int i = 0; i < along; ++i) {
+    int found = 0;
+    for (int j = 0; j < across; ++j) {
+      const double y = low + (high - low) * (j + 0.5) / across;
+      const DeckExtent extent = outline.at(y);
+      const auto at = surface(extent.begin + (extent.end - extent.begin) * (i + 0.5) / along, y);
+      if (!at) continue;
+      result.row(i) += motion(*at);
+      ++found;
+    }
+    if (found > 0) result.row(i) /= found;
+  }
+  return result;
+}
+
+/// The largest mean_over_width() of each mode over its largest displacement anywhere, that of rotations at half the
+/// width of the track.
+Eigen::ArrayXd bending_share(const FeStructure& structure, const std::vector<int>& deck, const ModalBasis& basis) {
+  const Eigen::ArrayXd largest = mean_over_width(structure, deck, basis).array().abs().colwise().maxCoeff().transpose();
   Eigen::ArrayXd anywhere = largest;
   for (Eigen::Index row = 0; row < basis.shape.rows(); ++row) {
     constexpr double half_track = 0.75;  // [m]: what a rotation counts as
@@ -54,14 +91,13 @@ Eigen::ArrayXd share_on_line(const FeStructure& structure, const DeckFunction& d
 }
 
 /// Modes up to the cut-off and some beyond it, which the static deflection needs.
-ModalBasis enough_modes(const FeStructure& structure, const DeckFunction& line, double begin, double end,
-                        const DynamicModes& wanted) {
+ModalBasis enough_modes(const FeStructure& structure, const std::vector<int>& deck, const DynamicModes& wanted) {
   constexpr int first_try = 20, most = 320;
   for (int count = std::max(first_try, 2 * wanted.count);; count *= 2) {
     ModalBasis basis = lowest_modes(structure.stiffness, structure.mass, std::min(count, most));
     const auto found = static_cast<int>(basis.omega2.size());
     if (found < count || count >= most) return basis;
-    const BendingModes bending = bending_modes(share_on_line(structure, line, basis, begin, end));
+    const BendingModes bending = bending_modes(bending_share(structure, deck, basis));
     if (2 * count_dynamic_modes(basis.omega2.array().sqrt(), bending, wanted) <= found) return basis;
   }
 }
@@ -110,7 +146,7 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
   }
   const DeckFunction line = deck_function(structure, nodes);
   const ModalBasis basis =
-      by_modes ? ModalBasis{modal.shape, modal.omega.cwiseAbs2()} : enough_modes(structure, line, begin, end, modes);
+      by_modes ? ModalBasis{modal.shape, modal.omega.cwiseAbs2()} : enough_modes(structure, nodes, modes);
   ModalDeck deck;
   deck.name = "structure";
   deck.start = begin;
@@ -122,7 +158,7 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
     deck.damping =
         (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose().array() / (2.0 * deck.omega);
   }
-  const BendingModes bending = bending_modes(share_on_line(structure, line, basis, begin, end));
+  const BendingModes bending = bending_modes(bending_share(structure, nodes, basis));
   deck.first_bending = bending.first;
   deck.third_bending = bending.third;
   deck.dynamic_modes = count_dynamic_modes(deck.omega, bending, modes);

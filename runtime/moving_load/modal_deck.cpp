@@ -59,7 +59,7 @@ double ModalDeck::cut_off() const noexcept {
 }
 
 BendingModes bending_modes(const Eigen::ArrayXd& share) {
-  constexpr double least = 0.1;
+  constexpr double least = 1.0 / 3.0;
   BendingModes result;
   int found = 0;
   for (int mode = 0; mode < share.size() && found < 3; ++mode) {
@@ -91,6 +91,27 @@ void set_points(int intervals, const Eigen::MatrixXd& other_shapes, const std::v
   deck.largest_shape = deck.point_shape.cwiseAbs().colwise().maxCoeff().transpose();
 }
 
+namespace {
+
+struct SineMode {
+  double omega;      ///< [rad/s]
+  int half_waves;    ///< n of sin(nπx/L)
+  double amplitude;  ///< under the track [kg^-1/2]
+  bool bends;
+};
+
+/// Twist of the span between supports that hold it, under a track beside its axis: at rest a load P deflects the track
+/// by P e² x(L − x)/(GJ L), of which the modes that are left out have less than 1 %.
+void add_torsion(const BridgeParameters& span, std::vector<SineMode>& sines) {
+  constexpr int count = 64;
+  if (span.track_offset == 0.0) return;
+  const double first = pi / span.length * std::sqrt(span.G * span.J / span.rotary_inertia);
+  const double amplitude = std::abs(span.track_offset) * std::sqrt(2.0 / (span.rotary_inertia * span.length));
+  for (int n = 1; n <= count; ++n) sines.push_back({first * n, n, amplitude, false});
+}
+
+}  // namespace
+
 ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes& modes) {
   span.validate();
   BeamSection section;
@@ -106,14 +127,29 @@ ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes
     throw input_error("bridge", fmt::format("a first natural frequency of {:.4g} Hz", first / (2.0 * pi)),
                       fmt::format("at most {} modes below 30 Hz: see length, mass and bending stiffness", most));
   }
-  const int count = std::max({least, modes.count, by_cut_off});
-  const Eigen::ArrayXd n = Eigen::ArrayXd::LinSpaced(count, 1.0, count);
-  deck.omega = first * n.square();
+  std::vector<SineMode> sines;
+  for (int n = 1; n <= std::max({least, modes.count, by_cut_off}); ++n) {
+    sines.push_back({first * n * n, n, std::sqrt(2.0 / (span.mass * span.length)), true});
+  }
+  add_torsion(span, sines);
+  std::stable_sort(sines.begin(), sines.end(), [](const SineMode& a, const SineMode& b) { return a.omega < b.omega; });
+  const auto count = static_cast<Eigen::Index>(sines.size());
+  Eigen::ArrayXd n(count), amplitude(count);
+  deck.omega.resize(count);
+  for (Eigen::Index mode = 0; mode < count; ++mode) {
+    const SineMode& sine = sines[static_cast<std::size_t>(mode)];
+    deck.omega[mode] = sine.omega;
+    n[mode] = sine.half_waves;
+    amplitude[mode] = sine.amplitude;
+    if (sine.bends && sine.half_waves == 1) deck.first_bending = static_cast<int>(mode);
+    if (sine.bends && sine.half_waves == 3) deck.third_bending = static_cast<int>(mode);
+  }
   deck.damping = Eigen::ArrayXd::Constant(count, span.damping_ratio);
-  deck.third_bending = 2;
   deck.dynamic_modes = count_dynamic_modes(deck.omega, {deck.first_bending, deck.third_bending}, modes);
-  const int elements = 16 * std::max(3, deck.dynamic_modes);
-  const double h = span.length / elements, amplitude = std::sqrt(2.0 / (span.mass * span.length));
+  const int of_shortest = 2 * static_cast<int>(n.maxCoeff());
+  const int of_dynamic = static_cast<int>(n.head(deck.dynamic_modes).maxCoeff());
+  const int elements = std::max(of_shortest, 16 * std::max(3, of_dynamic));
+  const double h = span.length / elements;
   for (int e = 0; e < elements; ++e) {
     const double x = h * e;
     deck.knots.push_back(x);
@@ -126,7 +162,7 @@ ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes
     deck.shape.push_back(std::move(c));
   }
   deck.knots.push_back(span.length);
-  set_points(std::max(20, 8 * deck.dynamic_modes), Eigen::MatrixXd(0, count), {}, deck);
+  set_points(std::max(20, 8 * of_dynamic), Eigen::MatrixXd(0, count), {}, deck);
   return deck;
 }
 

@@ -23,7 +23,7 @@ struct ModalDeck {
   std::vector<Cubics> shape;  ///< of each element, modes × 4: c_n0 … c_n3
   Eigen::ArrayXd omega;       ///< circular natural frequencies, rising [rad/s]
   Eigen::ArrayXd damping;     ///< ratios of critical, 0 <= ζ < 1
-  int first_bending = 0;      ///< number of the first mode that bends the deck under the axles (BendingModes)
+  int first_bending = 0;      ///< number of the first mode that bends the deck (BendingModes)
   int third_bending = 0;      ///< of the third, or the last of fewer
   int dynamic_modes = 0;      ///< the first of them, that vibrate; the others deflect as at rest
   /// Where the largest motions are sought: along the line first, evenly spaced, then places of an imported deck.
@@ -51,7 +51,8 @@ struct DynamicModes {
 /// A simply supported span, frequencies (nπ/L)² √(EI/m) and shapes √(2/(mL)) sin(nπx/L); the
 /// same damping ratio for all modes. Cubics meet the sines in value and slope at their knots and are within 4e-6 of the
 /// amplitude of those of modes that vibrate. 25 modes at least: their static deflection is within 1e-5 of the beam's.
-/// Not of the track: add its mass.
+/// Under a track beside the axis at e, twist is added: nπ/L √(GJ/J_ρ) and e √(2/(J_ρ L)) sin(nπx/L), J_ρ the rotary
+/// inertia per length. Not of the track: add its mass.
 /// @throws InputError naming the key
 [[nodiscard]] ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes& modes = {});
 

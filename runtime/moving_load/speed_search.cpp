@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "railtab/runtime/base/linear_interpolation.hpp"
 #include "railtab/runtime/moving_load/resonance_curve.hpp"
 
 namespace railtab {
@@ -66,11 +67,7 @@ class Estimate {
 
  private:
   [[nodiscard]] double factor_at(const Found::value_type& passage, double least) const {
-    const auto at = std::lower_bound(speed_.begin(), speed_.end(), passage.first) - speed_.begin();
-    const std::size_t k = std::clamp<std::size_t>(static_cast<std::size_t>(at), 1, speed_.size() - 1);
-    const double part = std::clamp((passage.first - speed_[k - 1]) / (speed_[k] - speed_[k - 1]), 0.0, 1.0);
-    const double resonance = (1.0 - part) * resonance_[k - 1] + part * resonance_[k];
-    return (passage.second.*quantity_).value / std::hypot(resonance, least);
+    return (passage.second.*quantity_).value / std::hypot(interpolate(speed_, resonance_, passage.first), least);
   }
 
   const std::vector<double>& speed_;

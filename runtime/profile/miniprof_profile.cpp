@@ -53,8 +53,9 @@ OutlinePoint point_of(const MiniprofHeader& header, std::string_view content, co
   const bool fits = header.columns > 0 ? field.size() == header.columns : field.size() >= 2;
   if (!fits) {
     throw input_error(text.place(), fmt::format("\"{}\"", content),
-                      header.columns > 0 ? fmt::format("{} numbers as ColumnDef says", header.columns)
-                                         : std::string("at least two numbers X Y"));
+                      header.columns > 0
+                          ? expected_numbers(content, fmt::format("{} numbers as ColumnDef says", header.columns))
+                          : std::string("at least two numbers X Y"));
   }
   return {(number(field[header.x], text.place(), "a number for X") + header.x_offset) * mm,
           (number(field[header.y], text.place(), "a number for Y") + header.y_offset) * mm, text.line};

@@ -86,14 +86,11 @@ ProfileKnots read_profile_file(const std::filesystem::path& file, ProfileKind ki
 
 ProfileKnots load_profile(const std::string& name_or_file, ProfileKind kind, double rail_inclination, double noise,
                           RailOrigin origin) {
-  const std::vector<std::string> names = standard_profile_names(kind);
-  const bool known = std::any_of(names.begin(), names.end(),
-                                 [&](const std::string& n) { return lower_case(n) == lower_case(name_or_file); });
-  if (known) return standard_profile(kind, name_or_file, rail_inclination);
+  if (is_standard_profile(kind, name_or_file)) return standard_profile(kind, name_or_file, rail_inclination);
   if (is_file(name_or_file)) return read_profile_file(name_or_file, kind, noise, origin);
   throw input_error(kind == ProfileKind::wheel ? "wheel profile" : "rail profile",
                     fmt::format("\"{}\", neither a built-in name nor a file", name_or_file),
-                    fmt::format("one of {}, or a profile file", fmt::join(names, ", ")));
+                    fmt::format("one of {}, or a profile file", fmt::join(standard_profile_names(kind), ", ")));
 }
 
 }  // namespace railtab

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
 #include "railtab/runtime/base/file_signatures.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
 
 namespace railtab {
 
@@ -43,6 +46,30 @@ std::vector<std::string_view> fields(std::string_view text) {
     }
   }
   return result;
+}
+
+std::string expected_numbers(std::string_view line, std::string_view expected) {
+  constexpr std::string_view digits = "0123456789";
+  std::array<std::string_view, 8> words;
+  const std::size_t count = split(line, words, ";");
+  std::string with_points;
+  bool has_comma = false;
+  for (std::size_t i = 0; i < std::min(count, words.size()); ++i) {
+    std::string word(words[i]);
+    const std::size_t comma = word.find(',');
+    if (comma != word.npos) {
+      const bool between_digits = comma > 0 && comma + 1 < word.size() && digits.find(word[comma - 1]) != digits.npos &&
+                                  digits.find(word[comma + 1]) != digits.npos;
+      if (!between_digits) return std::string(expected);
+      word[comma] = '.';
+      has_comma = true;
+    }
+    double value = 0.0;
+    if (!parse(word, value)) return std::string(expected);
+    with_points += (i > 0 ? " " : "") + word;
+  }
+  if (!has_comma || count < 2 || count > words.size()) return std::string(expected);
+  return fmt::format("{}, with decimal points: {}", expected, with_points);
 }
 
 double number(std::string_view field, std::string_view place, std::string_view expected) {

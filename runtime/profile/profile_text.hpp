@@ -26,6 +26,9 @@ struct ProfileText {
 /// Fields between blanks; one comma or semicolon between two fields counts as a blank.
 [[nodiscard]] std::vector<std::string_view> fields(std::string_view text);
 
+/// What a line of numbers should be, for messages: `expected`, and the line with decimal points where it has commas.
+[[nodiscard]] std::string expected_numbers(std::string_view line, std::string_view expected);
+
 /// A finite decimal number, with optional sign and exponent, that fills the whole field.
 /// @throws InputError naming `place` and what was expected
 [[nodiscard]] double number(std::string_view field, std::string_view place, std::string_view expected);

@@ -177,7 +177,8 @@ class SimpackReader {
   void take_point(std::string_view content) {
     const std::vector<std::string_view> field = fields(content);
     if (field.size() < 2 || field.size() > 3) {
-      throw input_error(text_.place(), fmt::format("\"{}\"", content), "two numbers y z, and a weight if any");
+      throw input_error(text_.place(), fmt::format("\"{}\"", content),
+                        expected_numbers(content, "two numbers y z, and a weight if any"));
     }
     const std::string place = text_.place();
     // The weight steers smoothing alone, and points are not smoothed here.

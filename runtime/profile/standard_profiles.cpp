@@ -72,6 +72,11 @@ std::vector<std::string> standard_profile_names(ProfileKind kind) {
   return names;
 }
 
+bool is_standard_profile(ProfileKind kind, std::string_view name) {
+  const std::vector<std::string> names = standard_profile_names(kind);
+  return std::any_of(names.begin(), names.end(), [&](const std::string& n) { return same_ignoring_case(n, name); });
+}
+
 ProfileKnots standard_profile(ProfileKind kind, std::string_view name, double rail_inclination) {
   const bool wheel = kind == ProfileKind::wheel;
   if (!wheel && !(rail_inclination >= 0.0 && rail_inclination <= 0.1)) {

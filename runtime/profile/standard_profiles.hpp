@@ -15,6 +15,9 @@ inline constexpr double knife_edge_radius = 1e-4;
 /// Names of the built-in profiles of one kind that can form a pair, for messages and --help.
 [[nodiscard]] std::vector<std::string> standard_profile_names(ProfileKind kind);
 
+/// Whether a name is one of standard_profile_names(); case is ignored.
+[[nodiscard]] bool is_standard_profile(ProfileKind kind, std::string_view name);
+
 /// A built-in profile by name (case is ignored): wheels "S1002", "LMA-type", "cone-1:20", "cone-1:40",
 /// "conic-arc-stand-in"; rails "60E1" (also "UIC60"), "CHN60", "JIS60-stand-in", and for tests of curves "knife-edge",
 /// which is too narrow for the contact search. A name with "stand-in" is no standard's profile but has the main

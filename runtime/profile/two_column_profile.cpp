@@ -66,7 +66,8 @@ ProfilePoints read_two_columns(std::istream& in, const std::string& file) {
     if (content.empty()) continue;
     const std::vector<std::string_view> field = fields(content);
     const std::string place = text.place();
-    if (field.size() != 2) throw input_error(place, fmt::format("\"{}\"", content), "two numbers y z");
+    if (field.size() != 2)
+      throw input_error(place, fmt::format("\"{}\"", content), expected_numbers(content, "two numbers y z"));
     const double y = number(field[0], place, "a number for y");
     const double z = number(field[1], place, "a number for z");
     const double scale = unit.value_or(1.0);

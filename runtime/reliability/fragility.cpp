@@ -1,6 +1,7 @@
 #include "railtab/runtime/reliability/fragility.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "railtab/runtime/reliability/counter_random.hpp"
@@ -61,16 +62,29 @@ bool overlap(const std::vector<FragilityLevel>& levels) {
   return least_exceeded < most_stood;
 }
 
-std::vector<FragilityLevel> drawn_again(const std::vector<FragilityLevel>& levels, std::uint64_t replicate,
+void add(const FragilitySample& sample, std::vector<FragilityLevel>& levels) {
+  assert(sample.runs.size() == levels.size() && sample.exceeded.size() == levels.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    levels[i].runs += sample.runs[i];
+    levels[i].exceeded += sample.exceeded[i];
+  }
+}
+
+std::vector<FragilityLevel> without_runs(const std::vector<double>& intensities) {
+  std::vector<FragilityLevel> levels;
+  for (const double x : intensities) levels.push_back({x, 0, 0});
+  return levels;
+}
+
+// Samples are drawn whole: outcomes of a sample at neighbouring intensities are nearly one.
+std::vector<FragilityLevel> drawn_again(const std::vector<double>& intensities,
+                                        const std::vector<FragilitySample>& samples, std::uint64_t replicate,
                                         std::uint64_t seed) {
-  std::vector<FragilityLevel> drawn = levels;
-  std::uint32_t number = 0;
-  for (FragilityLevel& level : drawn) {
-    const double share = static_cast<double>(level.exceeded) / static_cast<double>(level.runs);
-    level.exceeded = 0;
-    for (std::size_t run = 0; run < level.runs; ++run) {
-      level.exceeded += uniform_random(seed, {replicate, number++, bootstrap_stream}) < share;
-    }
+  std::vector<FragilityLevel> drawn = without_runs(intensities);
+  const auto count = static_cast<double>(samples.size());
+  for (std::uint32_t number = 0; number < samples.size(); ++number) {
+    const double at = count * uniform_random(seed, {replicate, number, bootstrap_stream});
+    add(samples[std::min(static_cast<std::size_t>(at), samples.size() - 1)], drawn);
   }
   return drawn;
 }
@@ -119,17 +133,20 @@ std::optional<FragilityCurve> fit_fragility(const std::vector<FragilityLevel>& l
   return curve;
 }
 
-FragilityFit fragility_with_bounds(const std::vector<FragilityLevel>& levels, const BootstrapOptions& options) {
+FragilityFit fragility_with_bounds(const std::vector<double>& intensities, const std::vector<FragilitySample>& samples,
+                                   const BootstrapOptions& options) {
   FragilityFit fit;
+  std::vector<FragilityLevel> levels = without_runs(intensities);
+  for (const FragilitySample& sample : samples) add(sample, levels);
   fit.curve = fit_fragility(levels);
   for (const FragilityLevel& level : levels) {
     fit.observed.push_back(wilson_interval(level.exceeded, level.runs, options.confidence));
   }
-  if (!fit.curve) return fit;
+  if (!fit.curve || samples.size() < 2) return fit;
   std::vector<double> medians, deviations;
   std::vector<std::vector<double>> probabilities(levels.size());
   for (std::size_t r = 0; r < options.replicates; ++r) {
-    const std::optional<FragilityCurve> curve = fit_fragility(drawn_again(levels, r, options.seed));
+    const std::optional<FragilityCurve> curve = fit_fragility(drawn_again(intensities, samples, r, options.seed));
     if (!curve) continue;
     medians.push_back(curve->median);
     deviations.push_back(curve->deviation);

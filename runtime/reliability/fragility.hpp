@@ -28,6 +28,12 @@ struct FragilityCurve {
 /// @pre intensities > 0, exceeded <= runs
 [[nodiscard]] std::optional<FragilityCurve> fit_fragility(const std::vector<FragilityLevel>& levels);
 
+/// Runs of one sample, at every intensity: what it draws is the same at all of them, so that its outcomes depend on
+/// each other.
+struct FragilitySample {
+  std::vector<std::size_t> runs, exceeded;  ///< one per intensity
+};
+
 struct BootstrapOptions {
   std::size_t replicates = 1000;
   double confidence = 0.95;
@@ -42,9 +48,11 @@ struct FragilityFit {
   std::size_t replicates = 0;  ///< those with a curve: intervals are of them alone, and none where there are under half
 };
 
-/// fit_fragility() with percentile intervals of a bootstrap: each replicate draws as many runs per level again from
-/// those of the level.
-[[nodiscard]] FragilityFit fragility_with_bounds(const std::vector<FragilityLevel>& levels,
+/// fit_fragility() of all samples, with percentile intervals of a bootstrap: each replicate draws as many samples
+/// again, each with its runs at all intensities. A single sample has no intervals.
+/// @pre intensities > 0 with runs at each; of each sample as many counts as intensities, exceeded <= runs
+[[nodiscard]] FragilityFit fragility_with_bounds(const std::vector<double>& intensities,
+                                                 const std::vector<FragilitySample>& samples,
                                                  const BootstrapOptions& options);
 
 }  // namespace railtab

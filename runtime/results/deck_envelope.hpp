@@ -11,7 +11,7 @@
 namespace railtab {
 
 /// Extremes of all that is followed on a structure's decks (StructureModel::deck), over every step of a run; besides
-/// the channels themselves the vertical acceleration of the deck's nodes, as it is and low-passed (ZeroPhaseLowPass).
+/// the channels themselves the vertical acceleration of the deck's nodes, as it is and low-passed (LowPassBank).
 /// Memory does not grow with the run.
 class DeckEnvelope {
  public:

@@ -103,7 +103,8 @@ struct HeaderColumn {
 inline constexpr std::array header{
     HeaderColumn{"header/wheel_x", "wheels", "m",
                  "offset of each wheel behind the first wheelset; left, right, front first", &ResultHeader::wheel_x},
-    HeaderColumn{"header/static_wheel_load", "wheels", "N", "vertical force of each wheel at rest",
+    HeaderColumn{"header/static_wheel_load", "wheels", "N",
+                 "vertical force of each wheel at rest on level track, the mean of both wheels of a wheelset",
                  &ResultHeader::static_wheel_load},
     HeaderColumn{"header/body_x", "bodies", "m", "offset of each body behind the first wheelset", &ResultHeader::body_x,
                  false},

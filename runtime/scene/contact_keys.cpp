@@ -39,8 +39,11 @@ std::vector<KeyRow> pair_keys() {
                        ProfileKey{of_contact<&ContactParameters::rail>, ProfileKind::rail},
                        {},
                        {&noisy_rail_profile}},
-                      {"contact.rail_inclination", "1", "inclination of a built-in rail",
-                       RatioKey{of_contact<&ContactParameters::rail_inclination>, {0.0, 0.1}}},
+                      {"contact.rail_inclination",
+                       "1",
+                       "inclination of the rail",
+                       RatioKey{of_contact<&ContactParameters::rail_inclination>, {0.0, 0.1}},
+                       {&with_built_in_rail}},
                       {"contact.dimensions.track_gauge", "m", "distance of the gauge points",
                        NumberKey{of_dimensions<&PairDimensions::track_gauge>, {0.5, 2.0}}},
                       {"contact.dimensions.gauge_height", "m", "depth of the gauge points below the rail-head tops",
@@ -54,7 +57,8 @@ std::vector<KeyRow> pair_keys() {
 
 std::vector<KeyRow> force_keys() {
   return {
-      {"contact.creep_law", "", "creep law", TextKey{of_contact<&ContactParameters::creep_law>, creep_law_names}},
+      {"contact.creep_law", "", "creep law; linear: without the bound of friction",
+       TextKey{of_contact<&ContactParameters::creep_law>, creep_law_names}},
       {"contact.creep_table",
        "",
        "creep table; absent: the shipped one, for nu = 0.28",

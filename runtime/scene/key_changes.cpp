@@ -32,6 +32,10 @@ toml::table& entry_of(const KeyChange& change, toml::table& root, std::vector<st
   const std::size_t count = list ? list->size() : 0;
   parts.erase(parts.begin());
   const std::optional<std::size_t> named = parts.empty() ? std::nullopt : whole_number(parts.front());
+  if (named && parts.front().size() > 1 && parts.front().starts_with('0')) {  // each key has one spelling
+    throw input_error(change.key, fmt::format("the number {}", parts.front()),
+                      fmt::format("{}, without a zero before it", *named));
+  }
   if (named) parts.erase(parts.begin());
   const std::size_t number = named.value_or(1);
   if (parts.empty() || number < 1 || number > count || (!named && count > 1)) {

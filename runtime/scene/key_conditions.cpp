@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "railtab/runtime/profile/standard_profiles.hpp"
+
 namespace railtab::scene {
 namespace {
 
@@ -51,6 +53,11 @@ const Condition with_polach_law{"contact.creep_law = \"polach\"", [](At at) {
                                   return unless(at.scene.contact.creep_law == "polach",
                                                 fmt::format("contact.creep_law = \"{}\"", at.scene.contact.creep_law));
                                 }};
+const Condition with_built_in_rail{"a built-in contact.rail", [](At at) {
+                                     const std::string& rail = at.scene.contact.rail;
+                                     return unless(is_standard_profile(ProfileKind::rail, rail),
+                                                   fmt::format("the file contact.rail = \"{}\"", rail));
+                                   }};
 const Condition without_damping_type{"no bridge.damping_type", [](At at) {
                                        return unless(!at.names("bridge.damping_type"), "bridge.damping_type too");
                                      }};

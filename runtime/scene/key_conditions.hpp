@@ -34,7 +34,7 @@ extern const Condition without_speed_kmh, without_speed_file, without_contact_ta
 // Vehicles and contact.
 extern const Condition without_consist, without_imported_vehicle;
 extern const Condition with_imported_vehicle, with_contact_table, with_hertz_contact, with_creep_table_law,
-    with_polach_law, with_speed_file, with_automatic_contact_force, with_smooth_search;
+    with_polach_law, with_built_in_rail, with_speed_file, with_automatic_contact_force, with_smooth_search;
 // Loads.
 extern const Condition with_aerodynamics;
 // The line.

@@ -26,8 +26,9 @@ struct Warning {
 };
 
 extern const Warning vehicle_above_top_speed, vehicle_above_critical_speed, vehicle_linearised, vehicle_implausible;
-extern const Warning speed_outside_run, speed_without_brakes, start_on_flanges, judging_outside_run;
+extern const Warning speed_outside_run, speed_without_brakes, start_on_flanges, start_on_span, judging_outside_run;
 extern const Warning steps_too_long, records_too_few;
+extern const Warning rails_off_gauge;
 extern const Warning noisy_wheel_profile, noisy_rail_profile;
 extern const Warning energy_rule_with_paper_search, inaccurate_loaded_table;
 extern const Warning structure_unlike_a_bridge, span_unlike_a_bridge, span_far_from_track, span_with_few_sleepers;

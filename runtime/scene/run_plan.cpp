@@ -79,7 +79,8 @@ void describe_contact(const SceneParameters& scene, const VsiModel& model, Model
                                 ? "elastic contact forces: half-space solutions, from the loaded part of the table"
                                 : "elastic contact forces: an ellipse per patch"));
     }
-    plan.built.push_back(fmt::format("creep forces: {}", scene.contact.creep_law));
+    plan.built.push_back(fmt::format("creep forces: {}{}", scene.contact.creep_law,
+                                     scene.contact.creep_law == "linear" ? ", without the bound of friction" : ""));
     if (!scene.contact.friction_file.empty()) {
       plan.built.push_back(fmt::format("friction of {}", scene.contact.friction_file.filename().string()));
     }

@@ -338,6 +338,7 @@ namespace railtab {
 SceneParameters read_scene(const std::filesystem::path& file, const std::vector<KeyChange>& changes) {
   scene::SceneDraft draft;
   draft.parameters.text = read_toml_text(file, "a TOML scene");
+  check_toml_bounds(draft.parameters.text, file);
   try {
     toml::table root = toml::parse(draft.parameters.text, file.string());
     check_toml_kind(root, file, TomlKind::scene);

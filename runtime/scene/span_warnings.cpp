@@ -5,9 +5,29 @@
 
 #include "railtab/runtime/scene/scene_case.hpp"
 
-// Spans that the train hardly loads, or from far away.
+// Spans that the train hardly loads, from far away, or from the beginning.
 
 namespace railtab::scene {
+
+namespace {
+
+void standing_on_span(const SceneCase& at, Warnings& list) {
+  if (!at.model.structure) return;
+  constexpr double about_its_end = 0.1;  // [m]
+  for (const auto& [begin, end] : at.model.structure->spans) {
+    for (int w = 0; w < at.model.wheelsets(); ++w) {
+      const double x = at.model.wheelset_x(w, 0.0);
+      if (x < begin + about_its_end || x > end - about_its_end) continue;
+      list.push_back(fmt::format(
+          "train.start = {:g} m: at t = 0 wheelset {} stands at x = {:.6g} m on a span, from {:.6g} m to {:.6g} m, "
+          "which begins at rest under it: what the entry of wheelsets adds is missing",
+          at.scene.train.start, w + 1, x, begin, end));
+      return;
+    }
+  }
+}
+
+}  // namespace
 
 const Warning span_far_from_track{
     "the beam axis lies more than 10 m below, above or beside the track", [](const SceneCase& at, Warnings& list) {
@@ -38,5 +58,7 @@ const Warning span_with_few_sleepers{
         return;
       }
     }};
+
+const Warning start_on_span{"wheelsets stand on a span at t = 0", standing_on_span};
 
 }  // namespace railtab::scene

@@ -8,7 +8,9 @@
 #include <optional>
 #include <vector>
 
+#include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/runtime/scene/scene_wheels.hpp"
 #include "railtab/runtime/start/wheelset_placement.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
@@ -42,6 +44,40 @@ VsiModel with_full_slope(const VsiModel& model) {
   VsiModel clean = model;
   clean.contact.friction_law.initial_slope = 1.0;
   return clean;
+}
+
+/// The train with the weight of each wheelset in the middle between its rails.
+VsiModel with_weight_in_the_middle(const VsiModel& model) {
+  VsiModel centred = model;
+  VehicleModel& vehicle = centred.vehicle;
+  for (const int wheelset : vehicle.wheelsets) {
+    const int roll = vehicle.dof[static_cast<std::size_t>(wheelset)][roll_dof];
+    if (roll != held) vehicle.static_load[roll] = 0.0;
+  }
+  return centred;
+}
+
+/// Of the wheelset with the least loaded wheel, where weights beside the middle alone prevent the train's equilibrium.
+std::optional<std::string> one_sided_weight(const VsiModel& model, double time) {
+  constexpr double rounding = 1e-6;  // of a wheel's load
+  const double half_distance = model.geometry->pair().tape_circle_offset();
+  int worst = 0;
+  double least = 1.0;  // load of a wheel over the mean of both
+  WheelLoads of_worst{0.0, 0.0};
+  for (int w = 0; w < model.wheelsets_per_vehicle(); ++w) {
+    const WheelLoads wheel = static_wheel_loads(model.vehicle, w, half_distance);
+    const double share = 2.0 * std::min(wheel.left, wheel.right) / (wheel.left + wheel.right);
+    if (!(share < least)) continue;
+    least = share;
+    worst = w;
+    of_worst = wheel;
+  }
+  if (least > 1.0 - rounding || !has_equilibrium(with_weight_in_the_middle(model), time)) return std::nullopt;
+  const PlaceInTrain place = wheelset_places(model)[static_cast<std::size_t>(worst)];
+  return fmt::format(
+      "there is one with the weight in the middle between the rails: at wheelset {} of vehicle {} the left wheel would "
+      "carry {:.3g} kN and the right one {:.3g} kN; check y of bodies and connections in the vehicle's data",
+      place.wheelset, place.coach, 1e-3 * of_worst.left, 1e-3 * of_worst.right);
 }
 
 /// Of profile files that the online search takes as they are: curves through noisy points have bumps, between which the
@@ -127,6 +163,7 @@ std::string no_equilibrium_message(const VsiModel& model, const EquilibriumRepor
       slope < 1.0 && has_equilibrium(with_full_slope(model), time)) {
     return fmt::format("{}; there is one with contact.initial_slope = 1, but not with {:.3g}", what, slope);
   }
+  if (const auto weight = one_sided_weight(model, time)) return fmt::format("{}; {}", what, *weight);
   const WheelRailPair& pair = model.geometry->pair();
   return fmt::format(
       "{}, {}; check that the wheels fit the rails: {} on {}, track gauge {} m, flange backs {} m apart, and the "
@@ -152,7 +189,7 @@ std::string displacement_warning(const SceneParameters& scene, const VsiModel& m
   for (int w = 0; w < model.wheelsets(); ++w) {
     const ContactGeometry& geometry = *contact[w].geometry;
     const double b = geometry.pair().tape_circle_offset();
-    load = std::max(load, static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle()));
+    load = std::max(load, wheel_load_at_rest(model.vehicle, w % model.wheelsets_per_vehicle()));
     for (const WheelSide side : {WheelSide::left, WheelSide::right}) {
       const bool left = side == WheelSide::left;
       const WheelsetMotion motion = wheelset_motion(present, present.predicted, w);

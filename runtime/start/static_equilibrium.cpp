@@ -166,6 +166,19 @@ void clear_pitch(const VsiModel& model, Eigen::VectorXd& dofs) {
   }
 }
 
+// Coefficient of friction of the w-th wheelsets of all vehicles, where each has the larger one of both its wheels and
+// the least counts, since they share their compliances.
+double friction_of_wheelsets(const VsiModel& model, int w, double time) {
+  if (!model.rail_friction) return model.contact.friction;
+  double least = INFINITY;
+  for (int i = w; i < model.wheelsets(); i += model.wheelsets_per_vehicle()) {
+    const double x = model.wheelset_x(i, time);
+    least = std::min(least,
+                     std::max(model.rail_friction->at(RailSide::left, x), model.rail_friction->at(RailSide::right, x)));
+  }
+  return least;
+}
+
 ContactProblem rest_problem(const VsiModel& model, RestOperators& rest, double time,
                             const std::vector<RailContact>& contacts) {
   const VehicleResponse& vehicle = rest.vehicle;
@@ -177,10 +190,13 @@ ContactProblem rest_problem(const VsiModel& model, RestOperators& rest, double t
   problem.vehicle_compliance = vehicle.compliance();
   problem.coupled = vehicle.coupled();
   problem.velocity_rate[pitch] = 1.0;
+  constexpr double least_friction = 1e-3;
   for (int w = 0; w < problem.wheelsets_per_vehicle; ++w) {
     const int k = 6 * w + pitch;
-    // Without friction no torque depends on the rotation.
-    const bool free_pitch = problem.vehicle_compliance(k, k) > 0.0 && model.contact.friction > 0.0;
+    // Without friction no torque depends on the rotation. With less friction than this, creep forces cannot balance the
+    // torque of rails that slope. Such wheelsets begin in pure rolling.
+    const bool free_pitch =
+        problem.vehicle_compliance(k, k) > 0.0 && friction_of_wheelsets(model, w, time) >= least_friction;
     problem.vehicle_compliance.row(k).setZero();
     problem.vehicle_compliance.col(k).setZero();
     if (free_pitch) problem.vehicle_compliance(k, k) = pitch_rate_compliance;
@@ -205,7 +221,7 @@ void scale(double share, std::vector<std::array<RailHeadMotion, 2>>& deviation) 
 double largest_static_load(const VsiModel& model) {
   double load = 0.0;
   for (int w = 0; w < model.wheelsets_per_vehicle(); ++w)
-    load = std::max(load, std::abs(static_wheel_load(model.vehicle, w)));
+    load = std::max(load, std::abs(wheel_load_at_rest(model.vehicle, w)));
   return load;
 }
 

@@ -140,7 +140,7 @@ void load_rails(const VsiModel& model, const ContactProblem& problem, Eigen::Vec
   for (int wheel = 0; wheel < 2 * model.wheelsets(); ++wheel)
     displacement.segment<3>(rail_unknown(wheel)) = problem.free.segment<3>(rail_unknown(wheel));
   for (const RailCoupling& c : problem.rail) {
-    const double load = static_wheel_load(model.vehicle, c.j % model.wheelsets_per_vehicle());
+    const double load = wheel_load_at_rest(model.vehicle, c.j % model.wheelsets_per_vehicle());
     displacement.segment<6>(rails_unknown(c.i)) += load * c.under_vertical_loads();
   }
 }
@@ -159,7 +159,7 @@ void set_down(const VsiModel& model, const TrainContact& contact, const ContactP
   for (int w = 0; w < model.wheelsets(); ++w) {
     const DofIndices& dof = wheelset_dof(model, w);
     if (dof[2] == held) continue;
-    const double load = static_wheel_load(model.vehicle, w % model.wheelsets_per_vehicle());
+    const double load = wheel_load_at_rest(model.vehicle, w % model.wheelsets_per_vehicle());
     WheelsetPlacement placement(contact, problem, w, {load, load}, displacement);
     const double difference = placement.settle();
     if (dof[3] == held) continue;

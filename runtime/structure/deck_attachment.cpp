@@ -123,12 +123,11 @@ DeckFunction beam_deck(std::vector<DeckNode> nodes) {
 /// Nodes of a deck's surface, sorted by x.
 class DeckSurface {
  public:
-  explicit DeckSurface(std::vector<DeckNode> nodes) : nodes_(std::move(nodes)) {}
+  explicit DeckSurface(std::vector<DeckNode> nodes) : nodes_(std::move(nodes)), outline_(places(nodes_)) {}
 
   [[nodiscard]] std::optional<DeckAttachment> operator()(double x, double y, double z) const {
-    if (x < nodes_.front().node.position[0] - same_place || x >= nodes_.back().node.position[0] - same_place) {
-      return std::nullopt;
-    }
+    const DeckExtent extent = outline_.at(y);
+    if (x < extent.begin - same_place || x >= extent.end - same_place) return std::nullopt;
     double radius = first_radius(x, y);
     for (int attempt = 0; attempt < 6; ++attempt, radius *= 1.3) {
       if (const auto deck = fit(x, y, z, radius)) return deck;
@@ -137,6 +136,11 @@ class DeckSurface {
   }
 
  private:
+  [[nodiscard]] static std::vector<Eigen::Vector2d> places(const std::vector<DeckNode>& nodes) {
+    std::vector<Eigen::Vector2d> result;
+    for (const DeckNode& n : nodes) result.emplace_back(n.node.position.head<2>());
+    return result;
+  }
   [[nodiscard]] std::string place(double x, double y) const {
     return fmt::format("structure.deck: at x = {:.3f} m, y = {:.3f} m", x, y);
   }
@@ -212,6 +216,7 @@ class DeckSurface {
   }
 
   std::vector<DeckNode> nodes_;
+  DeckOutline outline_;
 };
 
 }  // namespace

@@ -19,13 +19,41 @@ bool is_surface(const FeStructure& structure, const std::vector<int>& deck) {
   return high - low > same_line;
 }
 
-DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
-  DeckExtent extent{INFINITY, -INFINITY};
-  for (const int number : deck) {
-    extent.begin = std::min(extent.begin, structure.nodes.at(number).position[0]);
-    extent.end = std::max(extent.end, structure.nodes.at(number).position[0]);
+// By monotone chains: from the first node to the last and back, at corners that turn to one side alone.
+DeckOutline::DeckOutline(std::vector<Eigen::Vector2d> nodes) {
+  std::sort(nodes.begin(), nodes.end(),
+            [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  whole_ = {nodes.front().x(), nodes.back().x()};
+  const auto turns_left = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+    return (b.x() - a.x()) * (c.y() - b.y()) > (b.y() - a.y()) * (c.x() - b.x());
+  };
+  for (int chain = 0; chain < 2; ++chain) {
+    const std::size_t begin = corner_.size();
+    for (const Eigen::Vector2d& node : nodes) {
+      while (corner_.size() >= begin + 2 && !turns_left(corner_.end()[-2], corner_.back(), node)) corner_.pop_back();
+      corner_.push_back(node);
+    }
+    std::reverse(nodes.begin(), nodes.end());
   }
-  return extent;
+}
+
+DeckExtent DeckOutline::at(double y) const {
+  DeckExtent extent{INFINITY, -INFINITY};
+  for (std::size_t i = 0; i < corner_.size(); ++i) {
+    const Eigen::Vector2d &a = corner_[i], &b = corner_[(i + 1) % corner_.size()];
+    if (std::min(a.y(), b.y()) > y || std::max(a.y(), b.y()) < y) continue;
+    const double part = a.y() == b.y() ? 0.0 : (y - a.y()) / (b.y() - a.y());
+    const double x = a.x() + part * (b.x() - a.x());
+    extent.begin = std::min(extent.begin, x);
+    extent.end = std::max(extent.end, x);
+  }
+  return extent.end > extent.begin ? extent : whole_;
+}
+
+DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
+  std::vector<Eigen::Vector2d> nodes;
+  for (const int number : deck) nodes.emplace_back(structure.nodes.at(number).position.head<2>());
+  return DeckOutline(std::move(nodes)).at(0.0);
 }
 
 DeckExtent plausible_deck_extent(const FeStructure& structure, const std::vector<int>& deck) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -19,7 +20,21 @@ namespace railtab {
 struct DeckExtent {
   double begin = 0.0, end = 0.0;
 };
-/// @param deck numbers of its nodes, at least one
+
+/// A deck seen from above: the convex outline of its nodes, whose ends may be skew.
+class DeckOutline {
+ public:
+  /// @param nodes x and y [m], at least one
+  explicit DeckOutline(std::vector<Eigen::Vector2d> nodes);
+  /// On the line at y; beside the outline from the first to the last node.
+  [[nodiscard]] DeckExtent at(double y) const;
+
+ private:
+  std::vector<Eigen::Vector2d> corner_;  ///< of the outline, in turn
+  DeckExtent whole_;
+};
+
+/// On the track's centre line. @param deck numbers of its nodes, at least one
 [[nodiscard]] DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck);
 /// The same of the deck of a bridge under track. @throws InputError where no bridge is so long or so short, or the deck
 /// lies above the track or far below it: wrong units, axes or origins

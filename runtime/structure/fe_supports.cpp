@@ -137,6 +137,18 @@ struct Resistances {
   Eigen::MatrixXd strained, braked;
 };
 
+/// Of y and z, the motions that neither a row nor a support gives to a node.
+std::vector<std::string_view> loose_motions(const FeNode& node) {
+  std::vector<std::string_view> loose;
+  for (const int motion : {y_dof, z_dof}) {
+    const auto k = static_cast<std::size_t>(motion - y_dof);
+    if (node.rows[static_cast<std::size_t>(motion)].empty() && node.support[k] == held) {
+      loose.push_back(motion_names[static_cast<std::size_t>(motion)]);
+    }
+  }
+  return loose;
+}
+
 /// Takes rounding, and damping in proportion to the mass, out of what resists a translation; returns the remainder.
 std::string settle_declared_supports(const FeMatrices& m, const Eigen::MatrixXd& translation, const RowName& name,
                                      StructureSupports& s, Resistances& resistances) {
@@ -251,13 +263,13 @@ Eigen::MatrixXd translations(const FeStructure& structure) {
 }
 
 void stand_on_ground(const std::vector<int>& nodes, FeStructure& structure, StructureSupports& supports) {
-  const auto loose = std::find_if(nodes.begin(), nodes.end(), [&](int name) {
-    const FeNode& node = structure.nodes.at(name);
-    return (node.rows[y_dof].empty() && node.support[0] == held) ||
-           (node.rows[z_dof].empty() && node.support[1] == held);
-  });
+  const auto loose = std::find_if(nodes.begin(), nodes.end(),
+                                  [&](int name) { return !loose_motions(structure.nodes.at(name)).empty(); });
   if (loose != nodes.end() && !supports.alike_only()) {
-    supports.beyond = fmt::format("whose deck node {} has no row of y or z and stands on no [[support]]", *loose);
+    const std::string motions =
+        fmt::format("{}", fmt::join(loose_motions(structure.nodes.at(*loose)), " and none of "));
+    supports.beyond =
+        fmt::format("whose deck node {} has no row of {}, and no [[support]] that holds it there", *loose, motions);
     for (Columns* matrix : {&supports.stiffness, &supports.damping, &supports.mass})
       append_support(Eigen::MatrixXd::Zero(structure.dofs(), 2), *matrix);
     supports.x.push_back(supports.x.empty() ? 0.0 : supports.x.front());

@@ -10,6 +10,7 @@
 #include "railtab/runtime/base/motion_names.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/fe/mode_files.hpp"
+#include "railtab/runtime/structure/deck_interpolation.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/structure/stiffness_factor.hpp"
@@ -26,16 +27,26 @@ void set_modes(const Sparse& stiffness, const Sparse& mass, const Sparse& dampin
   result.omega = basis.omega2.cwiseSqrt();
   result.damping = (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose();
   result.damping.array() /= 2.0 * result.omega.array();
+  Eigen::Index kept = 0;
+  while (kept < result.damping.size() && result.damping[kept] <= most_damping_ratio) ++kept;
+  if (kept == 0) {
+    throw input_error("damping", fmt::format("a damping ratio of {:.3g} of the first mode", result.damping[0]),
+                      fmt::format("at most {}, as files of modes hold", most_damping_ratio));
+  }
+  basis.shape.conservativeResize(Eigen::NoChange, kept);
+  basis.omega2.conservativeResize(kept);
+  result.omega.conservativeResize(kept);
+  result.damping.conservativeResize(kept);
 }
 
-/// A motion of a node as the mean of rows of the matrices.
-struct NodeMotion {
+/// A motion of a node of the deck, as a sum of rows of the matrices.
+struct DeckMotion {
   int node = 0;
   std::size_t motion = 0;
   Eigen::SparseVector<double> rows;
 };
 
-void set_shapes(const std::vector<NodeMotion>& motions, const ModalBasis& basis, ModalStructure& result) {
+void set_shapes(const std::vector<DeckMotion>& motions, const ModalBasis& basis, ModalStructure& result) {
   result.shape.resize(static_cast<Eigen::Index>(motions.size()), basis.shape.cols());
   for (std::size_t r = 0; r < motions.size(); ++r) {
     result.shape.row(static_cast<Eigen::Index>(r)) = motions[r].rows.transpose() * basis.shape;
@@ -44,10 +55,10 @@ void set_shapes(const std::vector<NodeMotion>& motions, const ModalBasis& basis,
 }
 
 /// Of the structure itself, where it gives way most.
-void set_flexibility(const std::vector<NodeMotion>& motions, const std::vector<int>& deck, const Sparse& stiffness,
+void set_flexibility(const std::vector<DeckMotion>& motions, const std::vector<int>& deck, const Sparse& stiffness,
                      ModalStructure& result) {
   const int softest = softest_node(result, deck);
-  for (const NodeMotion& m : motions) {
+  for (const DeckMotion& m : motions) {
     if (m.node != softest || m.motion != z_dof || m.rows.nonZeros() == 0) continue;
     const Eigen::VectorXd load = m.rows;
     result.whole_flexibility[softest] = m.rows.dot(stiffness_factor(stiffness).solve(load));
@@ -74,14 +85,16 @@ ModalStructure modes_at_deck(const ImportParameters& parameters, int modes) {
   for (const int node : deck) {
     for (std::size_t k = 0; k < 6; ++k) has[k] = has[k] || !structure.nodes.at(node).rows[k].empty();
   }
-  std::vector<NodeMotion> motions;
+  std::vector<DeckMotion> motions;
   for (const int node : deck) {
     const FeNode& place = structure.nodes.at(node);
     result.at.nodes[node].position = place.position;
     for (std::size_t k = 0; k < 6; ++k) {
       if (!has[k]) continue;
-      NodeMotion& motion = motions.emplace_back(NodeMotion{node, k, Eigen::SparseVector<double>(structure.dofs())});
-      for (const int row : place.rows[k]) motion.rows.coeffRef(row) += 1.0 / static_cast<double>(place.rows[k].size());
+      DeckMotion& motion = motions.emplace_back(DeckMotion{node, k, Eigen::SparseVector<double>(structure.dofs())});
+      for (const auto& [row, share] : node_motion(place, k)) {
+        if (row >= 0) motion.rows.coeffRef(row) += share;  // the others are those of supports, at rest
+      }
     }
   }
   set_shapes(motions, basis, result);
@@ -98,7 +111,7 @@ ModalStructure modes_at_deck(const std::vector<BridgeParameters>& spans, int mod
   ModalBasis basis;
   set_modes(model.stiffness, model.mass, model.damping, modes, result, basis);
   constexpr double apart = 1e-3, inside = 1e-9;  // [m]: the end of a span no longer belongs to it
-  std::vector<NodeMotion> motions;
+  std::vector<DeckMotion> motions;
   std::vector<int> deck;
   for (std::size_t s = 0; s < spans.size(); ++s) {
     for (int i = 0; i <= spans[s].elements; ++i) {
@@ -110,7 +123,7 @@ ModalStructure modes_at_deck(const std::vector<BridgeParameters>& spans, int mod
       const double before_end = std::min(x, bridge.spans[s][1] - inside);
       const DeckAttachment at = bridge.attach(before_end, 0.0, spans[s].axis_depth).value();
       for (std::size_t k = 0; k < 6; ++k) {
-        NodeMotion& motion = motions.emplace_back(NodeMotion{node, k, Eigen::SparseVector<double>(model.dofs())});
+        DeckMotion& motion = motions.emplace_back(DeckMotion{node, k, Eigen::SparseVector<double>(model.dofs())});
         for (std::size_t j = 0; j < at.dof.size(); ++j) {
           const double value = at.rows(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
           if (at.dof[j] >= 0 && value != 0.0) motion.rows.coeffRef(at.dof[j]) += value;

@@ -9,8 +9,10 @@
 namespace railtab {
 
 /// The lowest modes of an imported structure at its deck's nodes, with its static flexibility at softest_node().
-/// Only motions that the structure has get shapes: solids have no rotations.
-/// @throws InputError where there is no deck or the structure is not held; ComputationError as lowest_modes()
+/// Only motions that the structure has get shapes: solids have no rotations. The modes end before the first whose
+/// damping ratio is above most_damping_ratio, since files of modes hold no such mode.
+/// @throws InputError where there is no deck, the structure is not held or its first mode is damped more than that;
+/// ComputationError as lowest_modes()
 [[nodiscard]] ModalStructure modes_at_deck(const ImportParameters& parameters, int modes);
 
 /// The same of built-in spans at the nodes of their axes. Where two spans meet, the node that ends the first stands a

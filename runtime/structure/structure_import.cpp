@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 #include "railtab/runtime/base/column_rows.hpp"
 #include "railtab/runtime/base/motion_names.hpp"
@@ -35,8 +37,9 @@ struct Node {
 };
 
 struct DofTable {
-  std::vector<std::pair<std::string, Node>> nodes;  // in the order of the file
-  std::vector<double> sign;                         // per row of the matrices
+  std::vector<std::pair<std::string, Node>> nodes;       // in the order of the file
+  std::unordered_map<std::string, std::size_t> index{};  // by name
+  std::vector<double> sign;                              // per row of the matrices
 };
 
 void set_rails(Node& node, const std::string& place, std::string_view rail) {
@@ -70,16 +73,12 @@ void add_row(DofTable& table, std::vector<bool>& taken, const ColumnRows& line) 
   }
   if (name.empty()) throw input_error(place, "no node name", "a name");
   table.sign[static_cast<std::size_t>(row - 1)] = turned ? -1.0 : 1.0;
-  auto at = std::find_if(table.nodes.rbegin(), table.nodes.rend(),
-                         [wanted = name](const auto& n) { return n.first == wanted; });
-  if (at == table.nodes.rend()) {
-    table.nodes.emplace_back(std::string(name), Node{});
-    at = table.nodes.rbegin();
-    at->second.x = x;
-    at->second.place = place;
-    set_rails(at->second, place, rail);
+  const auto [at, is_new] = table.index.try_emplace(std::string(name), table.nodes.size());
+  if (is_new) {
+    table.nodes.emplace_back(name, Node{x, place});
+    set_rails(table.nodes.back().second, place, rail);
   }
-  Node& node = at->second;
+  Node& node = table.nodes[at->second].second;
   Node other;
   set_rails(other, place, rail);
   if (node.x != x || node.left != other.left || node.right != other.right || node.support != other.support) {

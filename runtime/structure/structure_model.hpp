@@ -116,8 +116,8 @@ struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
   std::array<RailLine, 2> rail;      ///< indexed by RailSide
   std::vector<StructureNode> nodes;  ///< nodes of interest
-  /// Their motions that are sums of dofs, such as rotations fitted to displacements around them, 6 rows each; empty:
-  /// none.
+  /// Their motions that are sums of dofs and no dofs, such as rotations fitted to displacements around them, 6 rows
+  /// each; empty: none.
   Eigen::SparseMatrix<double, Eigen::RowMajor> summed_nodes{};
   DeckChannels deck{};
   /// Position along the track of every dof [m], not decreasing; empty where it is not known.
@@ -135,6 +135,16 @@ struct StructureModel {
   std::vector<std::string> left_out{};  ///< for the plan: what modes lack of the structure that they come from
   [[nodiscard]] int dofs() const noexcept { return static_cast<int>(mass.rows()); }
 };
+
+/// A motion of a node of interest under a vector of dofs: its own dof, or what is summed for it.
+/// @param motion 0 to 5: x, y, z, roll, pitch, yaw
+[[nodiscard]] inline double node_motion(const StructureModel& structure, std::size_t node, std::size_t motion,
+                                        const Eigen::VectorXd& dofs) {
+  const int dof = structure.nodes[node].dof[motion];
+  if (dof != held) return dofs[dof];
+  const auto& sums = structure.summed_nodes;
+  return sums.size() == 0 ? 0.0 : sums.row(static_cast<Eigen::Index>(6 * node + motion)).dot(dofs);
+}
 
 /// A structure as models, their runs and kept factors have it in common; null: none.
 using SharedStructure = std::shared_ptr<const StructureModel>;

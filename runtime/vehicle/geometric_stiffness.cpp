@@ -68,10 +68,12 @@ void check_standing(const VehicleModel& vehicle) {
   const Eigen::MatrixXd K = vehicle.stiffness(moving, moving), M = vehicle.mass(moving, moving);
   const double lowest = generalised_eigenvalues(K, M)[0];
   if (lowest >= softest_omega2) return;
-  throw input_error(vehicle.name,
-                    fmt::format("a vehicle that falls over under its weight, {} first, ω² = {:.3g} rad²/s²",
-                                body_of(vehicle, moving[static_cast<std::size_t>(softest_row(K, M))]), lowest),
-                    "springs that resist roll and pitch by more than weights times their heights above them");
+  throw input_error(
+      vehicle.name,
+      fmt::format("a vehicle that falls over under its weight, {} first, ω² = {:.3g} rad²/s²",
+                  body_of(vehicle, moving[static_cast<std::size_t>(softest_row(K, M))]), lowest),
+      "springs that resist sideways motion, and roll and pitch by more than weights times their heights above "
+      "them");
 }
 
 }  // namespace

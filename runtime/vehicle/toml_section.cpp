@@ -45,6 +45,10 @@ toml::table parse_toml(const std::string& text, const std::filesystem::path& pla
   }
 }
 
+toml::table read_toml(const std::filesystem::path& file, std::string_view what) {
+  return parse_toml(read_toml_text(file, what), file);
+}
+
 std::string found_text(const toml::node& node) {
   if (const toml::value<std::string>* text = node.as_string()) return fmt::format("the text \"{}\"", text->get());
   if (const toml::value<std::int64_t>* whole = node.as_integer()) return fmt::format("{}", whole->get());
@@ -278,10 +282,18 @@ std::vector<TomlSection> TomlSection::sections(std::string_view key) {
   return result;
 }
 
+void TomlSection::without_effect(std::initializer_list<std::string_view> keys, std::string_view cause) {
+  for (const std::string_view key : keys) idle_.emplace(key, cause);
+}
+
 void TomlSection::reject_others() const {
   for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    if (const auto idle = idle_.find(name); idle != idle_.end()) {
+      throw error(name, fmt::format("a key that has no effect with {}", idle->second),
+                  fmt::format("no {}, or no {}", key_path(name), idle->second));
+    }
     const std::string meant = nearest(name, known_);
     std::vector<std::string> keys = known_;
     std::sort(keys.begin(), keys.end());

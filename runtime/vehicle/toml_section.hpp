@@ -4,6 +4,9 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +20,9 @@ namespace railtab {
 
 /// @throws InputError with the file and line of what is no TOML, or exceeds TomlBounds
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::filesystem::path& place);
+/// The same of a file. @param what  the file is, for messages ("a plan in TOML")
+/// @throws InputError as parse_toml(), and where there is no such file
+[[nodiscard]] toml::table read_toml(const std::filesystem::path& file, std::string_view what);
 
 /// What a message shows of a value.
 [[nodiscard]] std::string found_text(const toml::node& node);
@@ -59,6 +65,8 @@ class TomlSection {
   /// [[key]]; none: no entries
   [[nodiscard]] std::vector<TomlSection> sections(std::string_view key);
 
+  /// Keys that another value makes idle, which reject_others() names then. @param cause that value: motion = "vertical"
+  void without_effect(std::initializer_list<std::string_view> keys, std::string_view cause);
   /// To be called last. @throws InputError where the table has a key that was not asked for
   void reject_others() const;
   [[nodiscard]] InputError error(std::string_view key, std::string_view found, std::string_view expected) const;
@@ -79,6 +87,7 @@ class TomlSection {
   Provenance provenance_;
   SourcedValues* values_;
   std::vector<std::string> known_;
+  std::map<std::string, std::string, std::less<>> idle_;  // keys without effect, and why
 };
 
 }  // namespace railtab

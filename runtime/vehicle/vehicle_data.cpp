@@ -13,14 +13,12 @@ namespace railtab {
 
 namespace {
 
-// Of a vehicle that stands on its joints nothing can be said but its mass.
+// A vehicle that stands on its joints states its mass alone.
 std::vector<ClosingCheck> checks_of_mass(const VehicleData& data) {
   double mass = 0.0;
   for (const RigidBody& body : data.parts.bodies) mass += body.mass;
   std::vector<ClosingCheck> checks;
-  for (const StatedCheck& stated : data.checks) {
-    checks.push_back({stated, stated.quantity == "mass" ? std::optional(mass) : std::nullopt});
-  }
+  for (const StatedCheck& stated : data.checks) checks.push_back({stated, mass});
   return checks;
 }
 

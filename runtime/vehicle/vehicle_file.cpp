@@ -13,6 +13,13 @@ namespace railtab {
 
 namespace {
 
+// How a vehicle on joints loads its wheelsets and moves depends on its neighbours.
+void require_own_check(TomlSection& check, const VehicleData& data, std::string_view key) {
+  if (!data.stands_on_joints) return;
+  throw check.error(key, "a check of a vehicle that stands on joints",
+                    "mass alone: the rest depends on its neighbours");
+}
+
 void state_masses(TomlSection& check, VehicleData& data) {
   const double tolerance = check.number("tolerance", ratio_kind, 0.005);
   const auto state = [&](std::string quantity, double value) {
@@ -20,6 +27,7 @@ void state_masses(TomlSection& check, VehicleData& data) {
   };
   if (check.has("mass")) state("mass", check.number("mass", mass_kind));
   if (!check.has("axle_load")) return;
+  require_own_check(check, data, "axle_load");
   const std::vector<double> loads = check.numbers("axle_load", mass_kind);
   const std::size_t wheelsets = data.parts.wheelsets.size();
   if (loads.size() != 1 && loads.size() != wheelsets) {
@@ -40,6 +48,7 @@ void read_checks(TomlSection& root, VehicleData& data) {
       {"lower_sway", "car body lower sway"}, {"upper_sway", "car body upper sway"}, {"bogie_bounce", "bogie bounce"}};
   for (const auto& [key, motion] : motions) {
     if (!check->has(key)) continue;
+    require_own_check(*check, data, key);
     const auto [low, high] = check->interval(key, frequency_kind);
     data.checks.push_back({std::string(motion), "Hz", low, high});
   }

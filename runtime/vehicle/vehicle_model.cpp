@@ -13,6 +13,7 @@
 #include "railtab/runtime/base/spring_damper.hpp"
 #include "railtab/runtime/vehicle/geometric_stiffness.hpp"
 #include "railtab/runtime/vehicle/series_damper.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_terms.hpp"
 
 namespace railtab {
@@ -136,13 +137,44 @@ bool is_wheelset(const VehicleModel& vehicle, int body) noexcept {
   return std::find(vehicle.wheelsets.begin(), vehicle.wheelsets.end(), body) != vehicle.wheelsets.end();
 }
 
+std::string body_text(const VehicleModel& vehicle, int body) {
+  const VehicleBody& named = vehicle.bodies[static_cast<std::size_t>(body)];
+  return vehicle.coaches > 1 ? fmt::format("{} of vehicle {}", named.name, named.coach + 1) : named.name;
+}
+
 std::string body_of(const VehicleModel& vehicle, int row) {
   for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
     const DofIndices& dof = vehicle.dof[b];
-    if (std::find(dof.begin(), dof.end(), row) != dof.end()) return vehicle.bodies[b].name;
+    if (std::find(dof.begin(), dof.end(), row) != dof.end()) return body_text(vehicle, static_cast<int>(b));
   }
   return "an inner degree of freedom";
 }
+
+namespace {
+
+// The body whose vertical balance fails by most, by its own weight. Moments of other rows have another unit.
+InputError uncarried_weight(const VehicleModel& vehicle, const Eigen::VectorXd& weight,
+                            const Eigen::VectorXd& residual) {
+  int worst = -1;
+  double largest = 1e-9 * weight.norm();  // less is rounding
+  for (std::size_t b = 0; b < vehicle.bodies.size(); ++b) {
+    const int z = vehicle.dof[b][z_dof];
+    if (z == held || std::abs(residual[z]) <= largest) continue;
+    largest = std::abs(residual[z]);
+    worst = static_cast<int>(b);
+  }
+  const std::string expected = "every body carried by the wheelsets through springs";
+  if (worst < 0)
+    return input_error(vehicle.name, "weight of inner degrees of freedom that no spring carries", expected);
+  const int z = vehicle.dof[static_cast<std::size_t>(worst)][z_dof];
+  const bool hangs_on_nothing = vehicle.stiffness(z, z) == 0.0;
+  return input_error(vehicle.name,
+                     fmt::format("a weight of {:.3g} N of {} that {}", weight[z], body_text(vehicle, worst),
+                                 hangs_on_nothing ? "no spring carries" : "its springs do not hold in balance"),
+                     expected);
+}
+
+}  // namespace
 
 /// The motions that stay free of stiffness (lateral, yaw, wheel rotation) carry no weight, so the minimum-norm solution
 /// of the singular system is an equilibrium; a residual means that something is not carried.
@@ -165,12 +197,9 @@ StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& wei
   const Eigen::MatrixXd residual = K * sag - load;
   for (Eigen::Index k = 0; k < weight.cols(); ++k) {
     if (residual.col(k).norm() <= 1e-6 * weight.col(k).norm()) continue;
-    Eigen::Index row = 0;
-    residual.col(k).cwiseAbs().maxCoeff(&row);
-    throw input_error(vehicle.name,
-                      fmt::format("a weight of {:.3g} N of {} that no spring carries", residual.col(k).norm(),
-                                  body_of(vehicle, carried[static_cast<std::size_t>(row)])),
-                      "every body carried by the wheelsets through springs");
+    Eigen::VectorXd of_rows = Eigen::VectorXd::Zero(n);
+    of_rows(carried) = residual.col(k);
+    throw uncarried_weight(vehicle, weight.col(k), of_rows);
   }
   rest.reaction.setZero();
   rest.reaction(supported, Eigen::all) = weight(supported, Eigen::all) - vehicle.stiffness(supported, carried) * sag;
@@ -181,12 +210,21 @@ StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& wei
 void check_wheel_loads(const VehicleModel& vehicle, const std::function<std::string(std::size_t)>& place) {
   if (vehicle.gravity == 0.0) return;
   for (std::size_t w = 0; w < vehicle.wheelsets.size(); ++w) {
-    const auto body = static_cast<std::size_t>(vehicle.wheelsets[w]);
-    const int vertical = vehicle.dof[body][z_dof];
-    if (vertical == held || vehicle.static_load[vertical] > 0.0) continue;
+    const int body = vehicle.wheelsets[w];
+    const int vertical = vehicle.dof[static_cast<std::size_t>(body)][z_dof];
+    if (vertical == held) continue;
+    if (!(vehicle.static_load[vertical] > 0.0)) {
+      throw input_error(
+          place(w), fmt::format("{} that carries {:.6g} N", body_text(vehicle, body), vehicle.static_load[vertical]),
+          "a vehicle that stands on all its wheelsets");
+    }
+    const WheelLoads wheel = static_wheel_loads(vehicle, static_cast<int>(w), half_contact_distance);
+    if (wheel.left >= 0.0 && wheel.right >= 0.0) continue;
+    const bool left = wheel.left < wheel.right;
     throw input_error(place(w),
-                      fmt::format("{} that carries {:.6g} N", vehicle.bodies[body].name, vehicle.static_load[vertical]),
-                      "a vehicle that stands on all its wheelsets");
+                      fmt::format("{} whose {} wheel carries {:.6g} N", body_text(vehicle, body),
+                                  left ? "left" : "right", left ? wheel.left : wheel.right),
+                      "a vehicle that stands on all its wheels: weights nearer to the track's centre");
   }
 }
 

@@ -109,8 +109,8 @@ struct VehicleDescription {
 /// Dofs are numbered body by body. Static load: the reactions of the wheelsets' z and roll under gravity, so that zero
 /// displacement is the equilibrium on a rigid level track; z parts [N] add up to the weight, roll parts [N m] vanish on
 /// a vehicle that is loaded symmetrically.
-/// @throws InputError where a mass or inertia is not positive, an index is out of range, or the suspension does not
-/// carry a body's weight
+/// @throws InputError where a mass or inertia is not positive, an index is out of range, the suspension does not carry
+/// a body's weight, or a wheel would have to be pulled down
 [[nodiscard]] VehicleModel assemble_vehicle(const VehicleDescription& parts);
 
 }  // namespace railtab

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 
 #include "railtab/runtime/vehicle/joint_file.hpp"
 
@@ -19,6 +20,27 @@ std::string of(std::string_view quantity, std::string_view axis) { return fmt::f
 
 bool is_vertical(const VehicleData& data) { return data.motion == MotionPlane::vertical; }
 
+// Keys that vertical data have not.
+void leave_out(TomlSection& section, std::initializer_list<std::string_view> keys) {
+  section.without_effect(keys, "motion = \"vertical\"");
+}
+
+void leave_out_axis(TomlSection& section, std::string_view axis) {
+  for (const std::string_view quantity :
+       {"k", "c", "series_k", "damper_curve_", "stop_", "friction_", "friction_ratio_", "friction_travel_"}) {
+    leave_out(section, {of(quantity, axis)});
+  }
+}
+
+// Absent, the damper has rigid ends; no spring has the stiffness 0.
+double read_series_stiffness(TomlSection& section, std::string_view axis) {
+  const std::string key = of("series_k", axis);
+  if (!section.has(key)) return 0.0;
+  const double stiffness = section.number(key, stiffness_kind);
+  if (stiffness > 0.0) return stiffness;
+  throw section.error(key, "0", fmt::format("more than 0 N/m, or no {} for a damper with rigid ends", key));
+}
+
 // A characteristic through the origin whose force does not fall.
 ForceCurve read_curve(TomlSection& section, const std::string& key, std::string_view units) {
   const auto points = section.points(key, units);
@@ -26,7 +48,7 @@ ForceCurve read_curve(TomlSection& section, const std::string& key, std::string_
     const double before = i == 0 ? 0.0 : points[i - 1][1];
     if (!(points[i][0] > 0.0) || points[i][1] < before) {
       throw section.error(key, fmt::format("[{:.6g}, {:.6g}]", points[i][0], points[i][1]),
-                          "points from 0, 0 on, alike in both directions, whose forces do not fall");
+                          "points beyond 0, 0, alike in both directions, whose forces do not fall");
     }
   }
   return ForceCurve(points);
@@ -147,6 +169,10 @@ bool acts(const SuspensionUnit& unit) {
 
 void read_connection(TomlSection& section, VehicleData& data) {
   const bool vertical = is_vertical(data);
+  if (vertical) {
+    leave_out(section, {"y", "height", "both_sides", "friction_yaw", "friction_ratio_yaw", "friction_travel_yaw",
+                        "k_roll", "k_yaw"});
+  }
   const std::string name = section.text("name");
   const auto joins = section.pairs("joins");
   const double ahead = section.number("x", position_kind, 0.0);
@@ -203,11 +229,15 @@ void read_connection(TomlSection& section, VehicleData& data) {
 SuspensionUnit read_unit(TomlSection& section, const std::string& name, VehicleData& data) {
   SuspensionUnit unit;
   std::array<double, 3> k{}, c{}, series{};
-  for (std::size_t i = is_vertical(data) ? 2 : 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (is_vertical(data) && i < 2) {
+      leave_out_axis(section, axes[i]);
+      continue;
+    }
     NonlinearUnit& nonlinear = unit.nonlinear[i];
     k[i] = section.number(of("k", axes[i]), stiffness_kind, 0.0);
     c[i] = read_damping(section, axes[i], name, nonlinear, data);
-    series[i] = section.number(of("series_k", axes[i]), stiffness_kind, 0.0);
+    series[i] = read_series_stiffness(section, axes[i]);
     if (series[i] > 0.0 && c[i] < 1.0) {
       throw section.error(of("series_k", axes[i]), "a stiffness in series without damper",
                           fmt::format("{} too", of("c", axes[i])));
@@ -235,6 +265,7 @@ BodyInertia read_inertia(TomlSection& section, const VehicleData& data) {
   BodyInertia inertia;
   inertia.mass = section.number("mass", mass_kind);
   if (is_vertical(data)) {
+    leave_out(section, {"Jx", "Jz"});
     inertia.Jx = inertia.Jy = inertia.Jz = section.number("Jy", inertia_kind);
   } else {
     inertia.Jx = section.number("Jx", inertia_kind);
@@ -246,6 +277,7 @@ BodyInertia read_inertia(TomlSection& section, const VehicleData& data) {
 
 BodyInertia read_wheelset(TomlSection& section, const VehicleData& data) {
   if (!is_vertical(data)) return read_inertia(section, data);
+  leave_out(section, {"Jx", "Jy", "Jz"});
   const double mass = section.number("mass", mass_kind), radius = data.parts.nominal_radius;
   const double J = mass * radius * radius;  // acts on nothing: the rotations of vertical wheelsets are held
   return {mass, J, J, J};
@@ -254,6 +286,7 @@ BodyInertia read_wheelset(TomlSection& section, const VehicleData& data) {
 void read_further_bodies(TomlSection& root, VehicleData& data) {
   const bool vertical = is_vertical(data);
   for (TomlSection& section : root.sections("body")) {
+    if (vertical) leave_out(section, {"y", "height", "both_sides"});
     const std::string name = section.text("name");
     if (name.find_first_of("/* \t,") != name.npos || name == "car-body" || name.starts_with("wheelset")) {
       throw section.error("name", fmt::format("'{}'", name),
@@ -306,6 +339,7 @@ void read_bodies(TomlSection& root, VehicleData& data) {
   const double radius = data.parts.nominal_radius;
   TomlSection car = root.section("car_body");
   const double car_x = car.number("x", position_kind, 0.0);
+  if (is_vertical(data)) leave_out(car, {"height"});
   const double height = is_vertical(data) ? radius : car.number("height", height_kind);
   add_body(car, data, make_body("car-body", read_inertia(car, data), {car_x, 0.0, -height}));
   car.reject_others();
@@ -324,6 +358,7 @@ void read_two_bogie(TomlSection& root, VehicleData& data) {
   p.length = data.parts.length;
   // a number that vertical data have not, and which then acts on nothing
   const auto spatial = [&](TomlSection& section, std::string_view key, const NumberKind& kind, double& member) {
+    if (vertical) leave_out(section, {key});
     member = vertical ? p.nominal_radius : section.number(key, kind);
   };
   TomlSection car = root.section("car_body");
@@ -345,7 +380,12 @@ void read_two_bogie(TomlSection& root, VehicleData& data) {
   p.secondary = read_unit(secondary, "secondary suspension", data);
   spatial(secondary, "half_distance", distance_kind, p.secondary_half_distance);
   spatial(secondary, "height", distance_kind, p.secondary_height);
-  if (!vertical) p.secondary_bending = secondary.number("bending", bending_kind, 0.0);
+  if (vertical) {
+    leave_out(secondary, {"bending"});
+    leave_out(root, {"roll_bar"});
+  } else {
+    p.secondary_bending = secondary.number("bending", bending_kind, 0.0);
+  }
   for (const TomlSection* section : {&car, &bogie, &wheelset, &layout, &primary, &secondary}) section->reject_others();
   if (std::optional<TomlSection> bar = vertical ? std::nullopt : root.find_section("roll_bar")) {
     p.roll_bar = bar->number("stiffness", bending_kind);

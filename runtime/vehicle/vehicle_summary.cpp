@@ -4,20 +4,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/dense_solvers.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
 
 namespace railtab {
 
 VehicleSummary summarise(const VehicleModel& vehicle, int modes) {
-  constexpr std::size_t vertical = 2;
   VehicleSummary summary;
   std::vector<bool> rests(static_cast<std::size_t>(vehicle.dofs()), false);
   for (const int w : vehicle.wheelsets) {
-    const DofIndices& dof = vehicle.dof[static_cast<std::size_t>(w)];
-    const double load = dof[vertical] == held ? 0.0 : vehicle.static_load[dof[vertical]];
-    summary.wheel_load.push_back(0.5 * load);
-    summary.mass += load / vehicle.gravity;
-    for (const int row : dof) {
+    const int wheelset = static_cast<int>(summary.wheel_load.size());
+    summary.wheel_load.push_back(static_wheel_load(vehicle, wheelset));
+    summary.mass += 2.0 * summary.wheel_load.back() / standard_gravity;
+    for (const int row : vehicle.dof[static_cast<std::size_t>(w)]) {
       if (row != held) rests[static_cast<std::size_t>(row)] = true;
     }
   }

@@ -19,7 +19,10 @@ void add_pair_matrix(Eigen::MatrixXd& matrix, const DofIndices& a, const DofIndi
 /// Whether a body is one of the vehicle's wheelsets.
 [[nodiscard]] bool is_wheelset(const VehicleModel& vehicle, int body) noexcept;
 
-/// Name of the body that a row moves, for messages; "an inner degree of freedom" where it is of none.
+/// Name of a body for messages, with the number of its vehicle where the model is a train: "car-body of vehicle 2".
+[[nodiscard]] std::string body_text(const VehicleModel& vehicle, int body);
+
+/// body_text() of the body that a row moves, for messages; "an inner degree of freedom" where it is of none.
 [[nodiscard]] std::string body_of(const VehicleModel& vehicle, int row);
 
 /// Of a unit between two bodies that have moved [m]. @param displacement all dofs
@@ -36,7 +39,8 @@ struct StandingVehicle {
 /// @throws InputError where a weight is not carried by the wheelsets through springs
 [[nodiscard]] StandingVehicle standing(const VehicleModel& vehicle, const Eigen::MatrixXd& weight);
 
-/// Every wheelset of a vehicle with weight must carry some of it. @param place of a wheelset, for messages
+/// Every wheelset of a vehicle with weight must carry some of it, and no rail can pull down a wheel: the contacts count
+/// as standard gauge has them. @param place of a wheelset, for messages
 /// @throws InputError
 void check_wheel_loads(const VehicleModel& vehicle, const std::function<std::string(std::size_t wheelset)>& place);
 

@@ -188,12 +188,10 @@ RailHeadMotion rail_motion(const ContactProblem& problem, const Eigen::VectorXd&
   return motion;
 }
 
-NewtonReport evaluate_contact(const TrainContact& train, const ContactProblem& problem, ContactSolution& solution) {
-  NewtonReport report;
+void evaluate_contact(const TrainContact& train, const ContactProblem& problem, ContactSolution& solution) {
   NewtonWorkspace workspace;
   const int wheelsets = static_cast<int>(solution.displacement.size()) / wheelset_unknowns;
-  report.counts = evaluate(train, problem, Pairs::searched, {0, wheelsets}, solution, workspace);
-  return report;
+  evaluate(train, problem, Pairs::searched, {0, wheelsets}, solution, workspace);
 }
 
 }  // namespace railtab

@@ -178,7 +178,7 @@ struct NewtonWorkspace {
 void contact_residual(const ContactProblem& problem, const ContactSolution& solution, Eigen::VectorXd& residual);
 
 /// Forces at solution.displacement, written into the solution.
-NewtonReport evaluate_contact(const TrainContact& train, const ContactProblem& problem, ContactSolution& solution);
+void evaluate_contact(const TrainContact& train, const ContactProblem& problem, ContactSolution& solution);
 
 /// Newton on the contact unknowns, from solution.displacement. The Jacobian is inverted group by group of wheelsets;
 /// their coupling through vehicles and rails enters the residual. Each group keeps its tangent while it halves the

@@ -15,16 +15,11 @@ void fill_motion(const DofIndices& dof, const LinearMotion& motion, MotionRecord
   }
 }
 
-// Motions that are sums of dofs.
-void add_sums(const VsiModel& model, const LinearMotion& motion, StepRecord& record) {
-  const auto& sums = model.structure->summed_nodes;
-  for (int row = 0; row < sums.outerSize(); ++row) {
-    const auto node = static_cast<std::size_t>(row / 6), k = static_cast<std::size_t>(row % 6);
-    for (StructureSupports::Columns::InnerIterator entry(sums, row); entry; ++entry) {
-      record.nodes[node].displacement[k] += entry.value() * motion.displacement[entry.col()];
-      record.nodes[node].velocity[k] += entry.value() * motion.velocity[entry.col()];
-      record.nodes[node].acceleration[k] += entry.value() * motion.acceleration[entry.col()];
-    }
+void fill_node(const StructureModel& structure, std::size_t node, const LinearMotion& motion, MotionRecord& record) {
+  for (std::size_t k = 0; k < 6; ++k) {
+    record.displacement[k] = node_motion(structure, node, k, motion.displacement);
+    record.velocity[k] = node_motion(structure, node, k, motion.velocity);
+    record.acceleration[k] = node_motion(structure, node, k, motion.acceleration);
   }
 }
 
@@ -103,8 +98,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   if (!model.structure) return;
   record.nodes.resize(model.structure->nodes.size());
   for (std::size_t n = 0; n < record.nodes.size(); ++n)
-    fill_motion(model.structure->nodes[n].dof, state.structure, record.nodes[n]);
-  add_sums(model, state.structure, record);
+    fill_node(*model.structure, n, state.structure, record.nodes[n]);
   add_carried(model, record);
 }
 

@@ -16,7 +16,7 @@ namespace {
 double mean_wheel_load(const VehicleModel& vehicle) {
   const int wheelsets = static_cast<int>(vehicle.wheelsets.size());
   double sum = 0.0;
-  for (int w = 0; w < wheelsets; ++w) sum += static_wheel_load(vehicle, w);
+  for (int w = 0; w < wheelsets; ++w) sum += wheel_load_at_rest(vehicle, w);
   return sum / wheelsets;
 }
 

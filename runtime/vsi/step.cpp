@@ -170,7 +170,7 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
   contact.set_speed(model.speed(state.time));
   ContactSolution now = state.contact;
   now.displacement = problem.predicted;
-  static_cast<void>(evaluate_contact(contact, problem, now));
+  evaluate_contact(contact, problem, now);
   for (int v = 0; v < static_cast<int>(state.vehicle.size()); ++v) {
     Eigen::VectorXd& load = state.vehicle[static_cast<std::size_t>(v)].contact_load;
     scatter_wheelset_forces(model, v, now.end_force, load);

@@ -63,7 +63,7 @@ struct ResultHeader {
   std::string contact_mode;               ///< table, online, paper; in the summary of a file that is read
   double speed = 0;                       ///< [m/s]
   std::vector<double> wheel_x;            ///< offset of each wheel behind the first wheelset (<= 0) [m]
-  std::vector<double> static_wheel_load;  ///< [N] per wheel
+  std::vector<double> static_wheel_load;  ///< Q0 per wheel, the mean of both of a wheelset [N]
   std::vector<std::string> body_names;    ///< "coach-1/car-body", ...
   std::vector<double> body_x;             ///< offset of each body behind the first wheelset; empty in older files [m]
   std::vector<double> body_y, body_z;     ///< right of the track's centre, below the rail-head tops; likewise [m]

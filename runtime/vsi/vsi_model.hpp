@@ -111,8 +111,9 @@ struct VsiState {
   std::vector<Eigen::VectorXd> friction;  ///< per vehicle: force of each force element that is dry friction [N]
   StopExtremes stops;                     ///< where vehicles have force elements
   ContactSolution contact;
-  /// Rail-head displacement under each wheel that the tabulated compliance leaves out (far wheels), 3 per wheel [m,
-  /// rad].
+  /// What the tabulated compliance leaves out of the rails' displacement (far wheels). Hertzian contact: that of the
+  /// rail head under each wheel, 3 per wheel [m, rad]. Rigid contact: displacement [m], slope [-] and curvature [1/m]
+  /// of the rails' mean line under each wheelset, 3 per wheelset, then zeros.
   Eigen::VectorXd far_field;
   ElementDeflection deflection;  ///< of rails between the nodes of their elements
   WheelExtremes wheel_extremes;

@@ -4,15 +4,15 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <sstream>
 
 #include "geometry_options.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "railtab/runtime/base/toml_text.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/vehicle/toml_kind.hpp"
+#include "railtab/runtime/vehicle/toml_section.hpp"
 
 namespace railtab {
 
@@ -90,29 +90,18 @@ BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file
   return pair;
 }
 
-toml::table parsed(const std::filesystem::path& file) {
-  const std::string text = read_toml_text(file, "a list of pairs in TOML");
-  try {
-    return toml::parse(text, file.string());
-  } catch (const toml::parse_error& wrong) {
-    const unsigned line = wrong.source().begin.line;
-    throw InputError(fmt::format("{}: {}", place(file, line), toml_fault(text, line, wrong.description())));
-  }
-}
-
 /// "1e-8" and "0.00000001" alike; what is no number stays.
 std::string shortest(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon != std::string::npos) return shortest(text.substr(0, colon)) + ":" + shortest(text.substr(colon + 1));
   double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? fmt::format("{}", value) : text;
+  return parse(text, value) ? fmt::format("{}", value) : text;
 }
 
 }  // namespace
 
 std::vector<BatchPair> read_batch_list(const std::filesystem::path& file) {
-  const toml::table root = parsed(file);
+  const toml::table root = read_toml(file, "a list of pairs in TOML");
   check_toml_kind(root, file, TomlKind::pair_list);
   Settings defaults;
   const toml::array* list = nullptr;

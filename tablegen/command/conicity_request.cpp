@@ -157,6 +157,7 @@ void set_pair(const TableCommandLine& line, ConicityRequest& request) {
   if (line.chosen("half-spacing")) {
     line.reject({"gauge", "flange-back"}, "no gauge and no flange-back distance beside --half-spacing");
   }
+  require_rail_to_incline(line);
   const double noise = requested_noise(line);
   request.pair = requested_wheelset(line, noise);
   request.name = names_of(*request.pair);

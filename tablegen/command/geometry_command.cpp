@@ -15,6 +15,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
                               arguments);
   if (line.help_printed()) return;
   require_profile_to_smooth(line);
+  require_rail_to_incline(line);
   const GeometryRequest request = geometry_request(line);
   if (!line.quiet()) {
     print_notes("geometry", request.search.pair());

@@ -13,6 +13,7 @@
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/profile/point_noise.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 #include "wheelset_functions.hpp"
 
@@ -68,6 +69,17 @@ void require_profile_to_smooth(const TableCommandLine& line) {
                     fmt::format("{} with the built-in profiles {} and {}", line.text("smoothing"), line.text("wheel"),
                                 line.text("rail")),
                     "a profile file, or no --smoothing: built-in profiles have no noise");
+}
+
+void require_rail_to_incline(const TableCommandLine& line) {
+  if (!line.chosen("rail-inclination")) return;
+  const auto is_rail_file = [](const std::string& rail) {
+    return !is_standard_profile(ProfileKind::rail, rail) && is_file(rail);
+  };
+  const std::string rail = line.required("rail");
+  if (!is_rail_file(rail) || (line.given("left-rail") && !is_rail_file(line.text("left-rail")))) return;
+  throw input_error("--rail-inclination", fmt::format("{} with the rail file {}", line.text("rail-inclination"), rail),
+                    "a built-in rail, or no --rail-inclination: the points of a file are those of the inclined rail");
 }
 
 void require_flanges_between_rails(const WheelRailPair& pair) {

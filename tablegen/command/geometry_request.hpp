@@ -25,6 +25,9 @@ struct GeometryRequest {
 /// @throws InputError where --smoothing meets built-in profiles alone, on which it does not act
 void require_profile_to_smooth(const TableCommandLine& line);
 
+/// @throws InputError where --rail-inclination meets rail files alone, whose points stand as the rail does
+void require_rail_to_incline(const TableCommandLine& line);
+
 /// @throws InputError where the flanges are wider apart at the gauge height than the track gauge
 void require_flanges_between_rails(const WheelRailPair& pair);
 

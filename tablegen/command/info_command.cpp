@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "command/json_text.hpp"
 #include "command/print.hpp"
@@ -101,7 +102,7 @@ nlohmann::ordered_json table_description(const GeometryTableData& table, const s
   j["leaves"] = table.leaf_branch.size();
   j["leaves_limited"] = limited_leaves(table);
   j["branches"] = branches_of(table);
-  if (table.shard.whole()) j["bytes"] = in_file(file, [&] { return GeometryTable(table).bytes(); });
+  if (table.shard.whole()) j["bytes"] = GeometryTable::bytes_of(table);
   j["file_bytes"] = std::filesystem::file_size(file);
   j["tolerance"] = table.tolerance;
   for (const auto& [name, value] : table.statistics) j["statistics"][name] = value;
@@ -159,18 +160,18 @@ std::string table_text(const GeometryTableData& table, const std::string& file) 
 namespace {
 
 void geometry_info(const TableCommandLine& line, const std::string& file) {
-  const GeometryTableData data = read_geometry_table(file);
+  GeometryTableData read = read_geometry_table(file);
   if (line.given("html")) {
     require_no_input(line.text("html"), {file});
     require_replaceable_text(line.text("html"), report::html_first_line(table_page_kind));
   }
-  const std::string text = table_text(data, file);
-  nlohmann::ordered_json description = table_description(data, file);
-  if (!data.shard.whole()) {
+  if (!read.shard.whole()) {
     if (line.given("html")) throw input_error(file, "a part of a table", "a whole one: merge the parts first");
-    return line.json() ? print_json(description) : print_text(text);
+    return line.json() ? print_json(table_description(read, file)) : print_text(table_text(read, file));
   }
-  const TableContact table = in_file(file, [&] { return TableContact(GeometryTable(data)); });
+  const TableContact table = in_file(file, [&] { return TableContact(GeometryTable(std::move(read))); });
+  const GeometryTableData& data = table.table().data();
+  const std::string text = line.json() && !line.given("html") ? "" : table_text(data, file);
   const std::optional<WheelsetFunctions> functions = in_file(file, [&] { return wheelset_functions(table); });
   if (line.given("html")) {
     if (!functions)
@@ -178,6 +179,7 @@ void geometry_info(const TableCommandLine& line, const std::string& file) {
     write_text_file(line.text("html"), table_page(table.search().pair(), data, *functions, text));
   }
   if (line.json()) {
+    nlohmann::ordered_json description = table_description(data, file);
     if (functions) {
       description["wheelset"] = functions_json(*functions, conicity_amplitudes(functions->radius_difference));
     }

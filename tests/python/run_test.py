@@ -182,7 +182,7 @@ class Runs(FolderTest):
 
     def test_warnings_are_python_s(self):
         Path("zero.csv").write_text("x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-40,0,0,0,0\n40,0,0,0,0\n")
-        changes = {"irregularity.file": Path("zero.csv"), "integration.duration": 0.01}
+        changes = {"irregularity.file": Path("zero.csv"), "integration.duration": 0.01, "train.start": -1}
         with self.assertWarnsRegex(UserWarning, "irregularity.file zero.csv"):
             railtab.run("scene.toml", changes=changes)
         with warnings.catch_warnings():

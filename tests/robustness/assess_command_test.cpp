@@ -132,8 +132,10 @@ TEST_F(AssessCommand, TellsOfAFreeEndOfADeck) {
   const json free = object(vsi("assess free.toml" + stage));
   const std::string note = "An end of deck " + free["decks"][0]["name"].get<std::string>() +
                            " is free to move: an axle load that comes on accelerates it at once, while rails, sleepers "
-                           "and ballast would spread the load. Where that can be over a tenth of the largest "
-                           "acceleration, it is overestimated and fails no limit; runs with contact have the track.";
+                           "and ballast would spread the load. A largest acceleration counts as overestimated, and "
+                           "fails no limit, where one such load gives more than a tenth of it at its place. Resonance "
+                           "that many such loads excite is not recognised and can fail a limit; runs with contact "
+                           "have the track.";
   const auto told = [&](const json& assessment) {
     const json& notes = assessment["stages"]["moving-load"]["notes"];
     return std::find(notes.begin(), notes.end(), note) != notes.end();
@@ -149,6 +151,64 @@ TEST_F(AssessCommand, TellsOfAFreeEndOfADeck) {
   EXPECT_NE(acceleration.value("reason", "").find("comes on to the free end"), std::string::npos);
   write("simple.toml", vertical + light_span);
   EXPECT_EQ(object(vsi("assess simple.toml" + stage))["stages"].dump().find("is free to move"), std::string::npos);
+}
+
+// HSLM-A is not the load model of a short span: it can fail, and does not pass.
+TEST_F(AssessCommand, AShortSpanAsksForHslmB) {
+  write("scene.toml", vertical + "[[bridge]]\nlength = 6.0\nmass = 25e3\nE = 30e9\nIy = 0.5\n");
+  write("hslm-b.csv", "x[m],P[kN]\n0,170\n3.5,170\n7,170\n");
+  const std::string stage = "assess scene.toml --stage moving-load -o out --json";
+  const std::string note = "requires HSLM-B in place of HSLM-A for simply supported spans below 7 m, as span 1 of 6 m";
+  const json by_hslm_a = object(vsi(stage));
+  EXPECT_NE(by_hslm_a["stages"]["moving-load"]["notes"].dump().find(note), std::string::npos);
+  const json deck = verdict(by_hslm_a, "en1990.deck-acceleration.ballasted");
+  EXPECT_LT(deck["value"].get<double>(), 3.5);
+  EXPECT_EQ(deck["outcome"], "not judged");
+  EXPECT_NE(deck["reason"].get<std::string>().find(note), std::string::npos) << deck;
+  const json by_another = object(vsi(stage + " --train hslm-b.csv"));
+  EXPECT_EQ(verdict(by_another, "en1990.deck-acceleration.ballasted")["outcome"], "pass");
+  EXPECT_EQ(by_another["stages"].dump().find("HSLM-B"), std::string::npos);
+}
+
+// What needs no low-pass is judged where steps are too long for that of the deck's acceleration.
+TEST_F(AssessCommand, LongStepsLeaveTheDeckItsOtherMeasures) {
+  const std::string keys =
+      "[train]\nspeed_kmh = 160\n[contact]\nnormal = \"rigid\"\n[integration]\ntime_step = 0.01\n[track]\n"
+      "length_before = 30\nlength_after = 30\n[output]\ndeck_envelope = true\ndeck_cut_off = 20\n";
+  write("scene.toml", keys + stiff_span);
+  const json found = object(vsi("assess scene.toml --stage contact --speed-kmh 160 -o out --json"));
+  const std::string notes = found["stages"]["contact"]["notes"].dump();
+  EXPECT_NE(notes.find("Decks are judged at all their nodes and every step (output.deck_envelope), but not by their "
+                       "accelerations: the low-pass at"),
+            std::string::npos)
+      << notes;
+  const json& measures = found["runs"][0]["measures"];
+  for (const char* measure : {"deck_displacement", "deck_end_rotation", "deck_joint_gap"}) {
+    EXPECT_TRUE(measures.contains(measure)) << measure << measures;
+  }
+  EXPECT_FALSE(measures.contains("deck_acceleration"));
+  const json deck = verdict(found, "en1990.deck-acceleration.ballasted");
+  EXPECT_EQ(deck["outcome"], "not judged");
+  EXPECT_NE(deck["reason"].get<std::string>().find("takes integration.time_step of at most"), std::string::npos)
+      << deck;
+}
+
+// Notes say which friction the limits of the flange take, and what lateral accelerations are in a curve.
+TEST_F(AssessCommand, FrictionAlongTheTrackAndACurve) {
+  write("friction.csv", "x[m],left[1],right[1]\n-100,0.2,0.2\n50,0.45,0.3\n");
+  write("scene.toml",
+        "[train]\nspeed_kmh = 160\nlateral_acceleration = 0.5\n[contact]\nmode = \"online\"\nfriction_file = "
+        "\"friction.csv\"\n[integration]\ntime_step = 1e-3\n[track]\nlength_before = 30\nlength_after = 30\n" +
+            stiff_span);
+  const json found = object(vsi("assess scene.toml --stage contact --speed-kmh 160 -o out --json"));
+  const std::string notes = found["stages"]["contact"]["notes"].dump();
+  EXPECT_NE(
+      notes.find("The limits of Nadal and Weinstock take the largest coefficient of contact.friction_file, 0.45."),
+      std::string::npos)
+      << notes;
+  EXPECT_NE(notes.find("that cant leaves (train.lateral_acceleration, train.cant) is not in them."), std::string::npos);
+  const double tangent = std::tan(70.0 * std::numbers::pi / 180.0);  // S1002
+  EXPECT_NEAR(verdict(found, "nadal")["limit"].get<double>(), (tangent - 0.45) / (1.0 + 0.45 * tangent), 0.03);
 }
 
 /// The value of the verdict is that of vsi moving-load.

@@ -245,6 +245,8 @@ TEST_F(ExportCommand, AFullDiskLeavesWhatWasThere) {
 TEST_F(ExportCommand, WhatAKilledExportLeftBehindGoes) {
   std::filesystem::create_directory(folder_ / "run.part-0badcafe");
   write("run.part-0badcafe/lock", "");
+  std::filesystem::create_directory(folder_ / "run");
+  write("run/lock", "");
   write("run.part-0badcafe/nodes-00000.vtu", "half a file");
   std::filesystem::create_directory(folder_ / "run.part-mine");
   ASSERT_EQ(vsi("export r.h5 -o run.pvd --times 0 -q").exit_code, 0);

@@ -109,6 +109,16 @@ TEST_F(FeFilesTest, ASymmetricMatrixMarketFileIsSquare) {
                   .starts_with("f:2: found 3 rows and 2 columns of a symmetric matrix"));
 }
 
+// As programs of Windows write UTF-8.
+TEST_F(FeFilesTest, AByteOrderMarkIsSkipped) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const std::string matrix = "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 3\n2 2 4\n";
+  EXPECT_EQ(read_matrix_market(write("marked.mtx", mark + matrix)).coeff(1, 1), 4.0);
+  const FeMesh nodes = read_fe_mesh(write("marked.txt", mark + "7 0.5 0. 0.25\n8 1 2 3\n"));
+  EXPECT_EQ(nodes.nodes.at(7), Eigen::Vector3d(0.5, 0, 0.25));
+  EXPECT_TRUE(message(read_fe_mesh, "7 0 0 0\n" + mark + "8 1 2 3\n").starts_with("f:2: found"));
+}
+
 TEST_F(FeFilesTest, CalculixMatrixAndRows) {
   const auto file = write("m.sti", "1 1  4.0\n1 2 -1.5\n2 2  5.0\n2 3  2.5e2\n3 3  6.0e5\n");
   EXPECT_TRUE(Eigen::MatrixXd(read_calculix_matrix(file, 3)).isApprox(expected, 0.0));

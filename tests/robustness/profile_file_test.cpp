@@ -88,6 +88,18 @@ TEST_F(ProfileFile, RejectsFieldsThatAreNoNumbers) {
   expect_rejected("head.txt", replaced(rail_points(), "-18.000000000 ", ""), ProfileKind::rail, {"head.txt:12:"});
 }
 
+TEST_F(ProfileFile, NamesDecimalCommas) {
+  for (const char* line : {"-69,9 11,5", "-69,9  11,5", "-69,9;11,5"}) {
+    expect_rejected(
+        "wheel.txt", std::string(line) + "\n", ProfileKind::wheel,
+        {"wheel.txt:1:", std::string("\"") + line + "\"", "expected two numbers y z, with decimal points: -69.9 11.5"});
+  }
+  expect_rejected("wheel.txt", "-69,9 11\n", ProfileKind::wheel, {"with decimal points: -69.9 11"});
+  EXPECT_EQ(rejection("wheel.txt", "1, 2, 3\n", ProfileKind::wheel).find("decimal points"), std::string::npos);
+  const std::string comma = replaced(simpack(in_mm), "-18.000000000 ", "-18,5 1,5 ");
+  expect_rejected("head.prr", comma, ProfileKind::rail, {"head.prr:18:", "two numbers y z, and a weight if any"});
+}
+
 TEST_F(ProfileFile, RejectsTooFewPoints) {
   expect_rejected("few.txt", "# units: mm\n-10 1\n0 0\n10 1\n", ProfileKind::rail,
                   {"few.txt", "3 points", "at least 4"});

@@ -499,6 +499,8 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
   rejected(std::string(speeds) + "[probability]\nmethod = \"subset\"\nmeasure = \"derailment\"\nlimit = 0.8\n",
            "found a variable with values, expected a distribution for each variable");
   rejected(std::string(speeds) + speeds, "plan.toml:5");
+  const std::string first = begin + "key = \"load.1.Fz\"\nvalues = [1]\n[[vary]]\nname = \"again\"\nkey = ";
+  rejected(first + "\"load.Fz\"\nvalues = [2]\n", "vary[2].key: found load.1.Fz twice, expected each key once");
 }
 
 TEST_F(StudyCommand, KeepsOtherFilesAndOtherStudies) {

@@ -204,6 +204,18 @@ TEST_F(TablegenCommand, ConicityOfAConeAndOfS1002) {
   expect_rejected_with_table("conicity s1002.h5 --diameter-difference 1", "diameter difference");
 }
 
+TEST_F(TablegenCommand, RailFilesAreNotInclined) {
+  std::ofstream(folder_ / "rail.txt") << "points\n";
+  const std::string message = "--rail-inclination: found 1:20 with the rail file rail.txt, expected a built-in rail";
+  const std::string pair = "--wheel S1002 --rail rail.txt --rail-inclination 1:20 ";
+  expect_rejected("geometry " + pair + "-o out.h5", message);
+  expect_rejected("conicity " + pair, message);
+  expect_rejected("conicity " + pair + "--left-rail rail.txt", message);
+  // the left rail is inclined: only the points are wrong
+  expect_rejected("conicity " + pair + "--left-rail 60E1", "rail.txt:1: ");
+  expect_rejected("geometry --wheel S1002 --rail rail.txt -o out.h5", "rail.txt:1: ");
+}
+
 TEST_F(TablegenCommand, RepairsOfProfileFilesAreSaidAndStored) {
   std::ofstream wheel(folder_ / "wheel.txt");
   for (int y = -30; y <= 30; ++y) wheel << y << ' ' << 1e-4 * y * y - 0.05 * y << '\n' << (y == 7 ? "7 -0.3451\n" : "");

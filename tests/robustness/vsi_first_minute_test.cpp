@@ -26,9 +26,14 @@ class FirstMinute : public VsiCommand {
 
 TEST_F(FirstMinute, EveryKindOfFileIsNamedWithItsCommands) {
   write("s.toml", "name = \"A scene\"\n" + rigid_scene + "duration = 0.02\n");
-  expect_said("s.toml", {"s.toml: a scene", "A scene", "> vsi check s.toml", "> vsi run s.toml"});
+  expect_said("s.toml",
+              {"s.toml: a scene", "A scene", "> vsi check s.toml", "> vsi run s.toml", "> vsi critical-speed s.toml"});
   ASSERT_EQ(vsi("run s.toml -o r.h5 -q").exit_code, 0);
   expect_said("r.h5", {"r.h5: results of a run", "A scene: complete", "8 wheels", "> vsi report r.h5 -o report.html"});
+  ASSERT_EQ(vsi("export r.h5 -o run.pvd -q").exit_code, 0);
+  expect_said("run.pvd", {"instants of a run for ParaView", "> paraview run.pvd"});
+  ASSERT_EQ(vsi("r.h5 --json > r.json").exit_code, 0);
+  expect_said("r.json", {"values of a command (JSON)"});
   ASSERT_EQ(vsi("report r.h5 -o r.html -q").exit_code, 0);
   expect_said("r.html", {"a page of railtab: run report"});
   write("t.html",
@@ -146,6 +151,11 @@ TEST_F(FirstMinute, ModesThatAreWrittenAreRead) {
   EXPECT_TRUE(read["mass_z"].is_null());
   EXPECT_NE(read["left_out"][0].get<std::string>().find("static flexibility beyond the modes"), std::string::npos);
   EXPECT_EQ(vsi("structure s.toml --modes 12 -o span -q").exit_code, 0) << "modes replace modes";
+  write("damped.toml", track + "[[bridge]]\nlength = 20\ndamping_ratio = 0.15\n");
+  const std::string damped = vsi("structure damped.toml --modes 40 -o damped").output;
+  EXPECT_NE(damped.find("of 40 modes, "), std::string::npos) << damped;
+  write("m2.toml", track + damped.substr(damped.find("[structure]")));
+  EXPECT_EQ(vsi("structure m2.toml").exit_code, 0);
   expect_rejected("structure m.toml -o again", "-o: found a scene whose structure is given by modes");
   write("span.modes.csv", "mine\n");
   expect_rejected("structure s.toml -o span", "span.modes.csv: found a file that begins with 'mine'");

@@ -212,6 +212,25 @@ TEST(Assessment, AnOverestimatedValueFailsNoLimit) {
   EXPECT_EQ(verdict_of().at->value, 3.6);
 }
 
+// Rounding alone fails no limit, of either sense.
+TEST(Assessment, AValueAtItsLimitPasses) {
+  const std::vector<Clause> clauses = library_clauses();
+  const auto outcome = [&](const char* id, const char* measure, double value) {
+    MeasuredValue v;
+    v.measure = measure;
+    v.stage = AssessmentStage::check;
+    v.value = value;
+    v.quantities["span"] = 20.0;
+    const std::vector<Verdict> verdicts = judge(clauses, {"ballasted", 50.0}, {v}, {});
+    return std::ranges::find_if(verdicts, [&](const Verdict& verdict) { return verdict.clause->id == id; })->outcome;
+  };
+  EXPECT_EQ(outcome("en1991.n0.lower.20", "first_frequency", 3.9999999999999996), Outcome::pass);
+  EXPECT_EQ(outcome("en1991.n0.lower.20", "first_frequency", 3.99999), Outcome::fail);
+  const double upper = upper_frequency_limit(20.0);
+  EXPECT_EQ(outcome("en1991.n0.upper", "first_frequency", upper * (1.0 + 1e-12)), Outcome::pass);
+  EXPECT_EQ(outcome("en1991.n0.upper", "first_frequency", upper * (1.0 + 1e-6)), Outcome::fail);
+}
+
 // How well a limit is known is told for each, and counted: a program that quotes the standard is not the standard.
 TEST(Assessment, BannerCountsWhereLimitsWereRead) {
   Assessment a;

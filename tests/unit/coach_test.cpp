@@ -1,4 +1,5 @@
 #include "railtab/runtime/base/dense_solvers.hpp"
+#include "railtab/runtime/vehicle/static_wheel_load.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
 
 #include <gtest/gtest.h>
@@ -67,6 +68,19 @@ TEST(Coach, StaticLoadIsTheWeightOnFourEqualAxles) {
   for (const int w : coach.wheelsets) {
     EXPECT_NEAR(coach.static_load[coach.dof[w][2]], weight / 4, 1e-9 * weight);
     EXPECT_NEAR(coach.static_load[coach.dof[w][3]], 0.0, 1e-9 * weight);
+  }
+}
+
+// In a curve with cant wheels carry more than on level track, which Q0 refers to.
+TEST(Coach, StaticWheelLoadIsThatOfLevelTrack) {
+  constexpr double in_curve = 1.05 * standard_gravity;
+  const CoachParameters p = coach_parameters("manchester-coach");
+  const VehicleModel level = build_coach(p), leans = build_coach(p, MotionPlane::spatial, {in_curve});
+  for (int w = 0; w < 4; ++w) {
+    const double load = static_wheel_load(level, w);
+    EXPECT_EQ(wheel_load_at_rest(level, w), load);
+    EXPECT_NEAR(wheel_load_at_rest(leans, w), 1.05 * load, 1e-9 * load);
+    EXPECT_NEAR(static_wheel_load(leans, w), load, 1e-9 * load);
   }
 }
 

@@ -286,6 +286,17 @@ TEST_F(ConsistFiles, SayWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(train({"power-car.toml", "coach.toml"}).find("the same joint in the files of both neighbours"),
             std::string::npos);
+  for (const char* name : {"end-coach.toml", "coach.toml"}) {
+    const auto read_with = [&](const std::string& check) {
+      write("checked.toml", replaced(text_of(name), "[check]\n", "[check]\n" + check + "\n"));
+      return message_of([&] { static_cast<void>(read_vehicle_file(folder_ / "checked.toml")); });
+    };
+    for (const char* check : {"axle_load = 17000.0", "bounce = [0.5, 1.5]"}) {
+      EXPECT_NE(read_with(check).find("found a check of a vehicle that stands on joints, expected mass alone"),
+                std::string::npos)
+          << name << ": " << read_with(check);
+    }
+  }
   write("coupler.toml", replaced(text_of("coupler.toml"), "behind/car-body", "behind/frame"));
   EXPECT_NE(train({"power-car.toml", "end-coach.toml", "coach.toml"}).find("body 'behind/frame'"), std::string::npos);
   write("coupler.toml", replaced(text_of("coupler.toml"), "behind/car-body", "frame"));

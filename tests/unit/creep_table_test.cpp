@@ -294,6 +294,12 @@ TEST(CreepTable, OutsideIsAStatus) {
   EXPECT_TRUE(table().lookup(1e3, {0.1, 0, 0}).inside);
 }
 
+// The memory of what look-ups do not read goes back.
+TEST(CreepTable, TheSplineStandsInPlaceOfTheValues) {
+  EXPECT_EQ(table().data().values.capacity(), 0U);
+  EXPECT_FALSE(CreepTable(small_table(CreepTableLayout::paper)).data().values.empty());
+}
+
 TEST(CreepTable, LooksUpWithoutAllocation) {
   const std::vector<CreepCase> cases = random_cases(100);
   static_cast<void>(table());

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "railtab/fmi/track_simulation.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -63,6 +65,32 @@ TEST(DrivenTrack, OtherContentIsRejectedAndHasAnotherGuid) {
     changed[place] = static_cast<char>(changed[place] ^ 0x10);
     EXPECT_NE(track_guid(changed), track_guid(bytes)) << place;
   }
+}
+
+// Nodes of shells, of solids and of modes have no dofs of their own.
+TEST(DrivenTrack, MovesNodesWhoseMotionsAreSums) {
+  DrivenTrack track = short_bridge(), summed = track;
+  constexpr std::size_t z = 2;
+  StructureModel& structure = summed.structure;
+  structure.summed_nodes.resize(static_cast<Eigen::Index>(6 * structure.nodes.size()), structure.dofs());
+  for (std::size_t node = 0; node < structure.nodes.size(); ++node) {
+    const int dof = std::exchange(structure.nodes[node].dof[z], held);
+    ASSERT_NE(dof, held);
+    structure.summed_nodes.insert(static_cast<Eigen::Index>(6 * node + z), dof) = 1.0;
+  }
+  TrackSimulation by_dofs(track), by_sums(track_of_bytes(track_bytes(summed), "track"));
+  for (TrackSimulation* simulation : {&by_dofs, &by_sums}) {
+    simulation->set(2, 6e4);
+    simulation->step(simulation->time_step());
+  }
+  double largest = 0.0;
+  for (std::size_t v = by_dofs.inputs(); v < by_dofs.variables().size(); ++v) {
+    EXPECT_EQ(by_sums.value(v), by_dofs.value(v)) << by_dofs.variables()[v].name;
+    if (by_dofs.variables()[v].name.starts_with("node[")) largest = std::max(largest, std::abs(by_dofs.value(v)));
+  }
+  EXPECT_GT(largest, 0.0);
+  summed.structure.summed_nodes.conservativeResize(6, structure.dofs());
+  EXPECT_THROW(static_cast<void>(track_of_bytes(track_bytes(summed), "track")), InputError);
 }
 
 // Displacement under the wheel of a load that grows as 1 - cos and moves, at the end of some time, by steps of a

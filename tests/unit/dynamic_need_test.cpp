@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace railtab {
 namespace {
 
@@ -22,6 +24,8 @@ TEST(DynamicNeed, LimitsOfTheFirstFrequencyMeetAt20Metres) {
 TEST(DynamicNeed, FollowsTheFlowChart) {
   EXPECT_EQ(need(200.0, 25.0, 4.0), DynamicNeed::not_required);
   EXPECT_EQ(need(200.0, 25.0, 3.0), DynamicNeed::required);
+  EXPECT_EQ(need(200.0, 20.0, std::nextafter(4.0, 0.0)), DynamicNeed::not_required) << "at the limit but for rounding";
+  EXPECT_EQ(need(200.0, 20.0, 4.0 * (1.0 - 1e-6)), DynamicNeed::required);
   EXPECT_EQ(need(200.0, 25.0, 9.0), DynamicNeed::required);
   EXPECT_EQ(need(201.0, 25.0, 4.0), DynamicNeed::required);
   EXPECT_EQ(need(300.0, 50.0, 3.0), DynamicNeed::not_required);

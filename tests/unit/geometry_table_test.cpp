@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "small_geometry_table.hpp"
@@ -103,6 +105,18 @@ TEST(GeometryTable, FindsTheLeafInTheTree) {
   expect(-0.004 + 0.75 * 0.00225, 0.0, 1, 0.5, 0.0);
   expect(-0.00175 + 0.25 * 0.00225, -0.0015, 2, -0.5, -0.5);
   expect(-0.00175 + 0.25 * 0.00225, 0.0015, 3, -0.5, 0.5);
+}
+
+// The memory of what look-ups do not read goes back.
+TEST(GeometryTable, HasItsCoefficientsOnce) {
+  const GeometryTableData data = small_geometry_table();
+  const GeometryTable table(data);
+  const std::span<const float> held = table.coefficients();
+  EXPECT_EQ(std::vector<float>(held.begin(), held.end()), data.coefficient);
+  EXPECT_EQ(table.data().coefficient.capacity(), 0U);
+  EXPECT_EQ(table.data().node, data.node);
+  EXPECT_EQ(table.bytes(), GeometryTable::bytes_of(data));
+  EXPECT_EQ(table.bytes(), GeometryTable::bytes_of(table.data()));
 }
 
 TEST(GeometryTable, OutsideIsAStatus) {

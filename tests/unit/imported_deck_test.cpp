@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -12,6 +15,7 @@
 #include "railtab/runtime/moving_load/static_deflection.hpp"
 #include "railtab/runtime/moving_load/train_passage.hpp"
 #include "railtab/runtime/structure/beam_element.hpp"
+#include "railtab/runtime/structure/deck_nodes.hpp"
 #include "railtab/runtime/structure/stiffness_factor.hpp"
 
 namespace railtab {
@@ -81,14 +85,89 @@ class BeamFiles : public testing::InFolder {
   }
 };
 
-// Modes that do not move the line of the axles, such as torsion about it, have no part in the limit of accelerations.
-TEST(BendingModes, AreThoseThatMoveTheLineOfTheAxles) {
-  const BendingModes of_girder = bending_modes(Eigen::ArrayXd{{1e-9, 0.25, 1.0, 0.0, 0.9, 0.06, 1.0, 0.8}});
+// Modes that do not bend the deck, such as torsion, have no part in the limit of accelerations.
+TEST(BendingModes, AreThoseThatMoveTheDeckAsAWhole) {
+  const BendingModes of_girder = bending_modes(Eigen::ArrayXd{{1e-9, 0.4, 1.0, 0.0, 0.9, 0.2, 1.0, 0.8}});
   EXPECT_EQ(of_girder.first, 1);
   EXPECT_EQ(of_girder.third, 4);
   const BendingModes few = bending_modes(Eigen::ArrayXd{{1e-9, 0.8, 0.0}});
   EXPECT_EQ(few.first, 1);
   EXPECT_EQ(few.third, 1);
+}
+
+TEST(DeckOutline, EndsOfASkewDeckFollowTheLine) {
+  // ends along x = y and x = 20 + y, with nodes inside and on the edges
+  std::vector<Eigen::Vector2d> nodes;
+  for (const double y : {-5.0, -2.5, 0.0, 2.5, 5.0}) {
+    for (int i = 0; i <= 20; ++i) nodes.emplace_back(i + y, y);
+  }
+  const DeckOutline outline(std::move(nodes));
+  for (const double y : {-5.0, -1.3, 0.0, 0.6, 5.0}) {
+    EXPECT_NEAR(outline.at(y).begin, y, 1e-12) << y;
+    EXPECT_NEAR(outline.at(y).end, 20.0 + y, 1e-12) << y;
+  }
+  EXPECT_EQ(outline.at(6.0).begin, -5.0) << "beside the deck its whole length";
+  EXPECT_EQ(outline.at(6.0).end, 25.0);
+  EXPECT_EQ(DeckOutline({{1.0, 0.3}, {4.0, 0.3}}).at(0.0).end, 4.0) << "a single line of nodes";
+}
+
+/// A deck 10 m wide on a track at its edge, whose modes are sin(nπs/L) with s along the deck from its skew end, and
+/// twist between the first and the second. Modes of a shell without cross bending.
+class SkewDeck : public testing::InFolder {
+ protected:
+  [[nodiscard]] ImportParameters deck(double skew, double middle) const {
+    std::string places = "# number, x, y, z\n", shapes = "mode,node,uz\n";
+    int node = 0;
+    for (int j = 0; j <= 8; ++j) {
+      const double y = 1.25 * (j - 4);
+      for (int i = 0; i <= 40; ++i) {
+        const double s = 0.5 * i;
+        char text[120];
+        std::snprintf(text, sizeof text, "%d, %.12g, %.12g, 0\n", ++node, s + (y + middle) * skew, y + middle);
+        places += text;
+        constexpr std::array half_waves{1, 1, 2, 3};
+        for (int mode = 0; mode < 4; ++mode) {
+          const double across = mode == 1 ? 0.3 * y : 1.0;
+          std::snprintf(text, sizeof text, "%d,%d,%.12g\n", mode + 1, node,
+                        across * std::sin(half_waves[static_cast<std::size_t>(mode)] * pi * s / span));
+          shapes += text;
+        }
+      }
+    }
+    ImportParameters parameters;
+    parameters.files.format = FeFormat::modes;
+    parameters.files.modes = write("modes.csv",
+                                   "mode,frequency,mass,damping\n1,4,1e5,0.01\n2,6,1e5,0.01\n3,16,1e5,0.01\n"
+                                   "4,36,1e5,0.01\n");
+    parameters.files.shapes = write("shapes.csv", shapes);
+    parameters.files.nodes = write("nodes.csv", places);
+    parameters.frame = {"m-N-kg", "x y z", {{0.0, 0.0, 0.0}}};
+    parameters.deck.from = {-1e6, -1e6, -1e6};
+    parameters.deck.to = {1e6, 1e6, 1e6};
+    return parameters;
+  }
+};
+
+// A deck whose ends are skew begins and ends under the track where a right one of that length does.
+TEST_F(SkewDeck, IsAsLongAsOnTheLine) {
+  AxleTrain train;
+  train.behind = {0.0, 2.5, 18.0, 20.5, 36.0, 38.5};
+  train.load.assign(6, 170e3);
+  const ModalDeck right = imported_deck(deck(0.0, 0.0)), skew = imported_deck(deck(std::tan(pi / 6.0), 0.0));
+  EXPECT_NEAR(skew.start, 0.0, 1e-6);
+  EXPECT_NEAR(skew.length(), span, 1e-6);
+  const PassagePeaks a = train_passage(right, train, modal_force(right, train), 60.0),
+                     b = train_passage(skew, train, modal_force(skew, train), 60.0);
+  EXPECT_NEAR(b.displacement.value, a.displacement.value, 0.03 * a.displacement.value);
+  EXPECT_NEAR(b.acceleration.value, a.acceleration.value, 0.05 * a.acceleration.value);
+}
+
+// Twist moves a track beside the middle, and is no bending.
+TEST_F(SkewDeck, TwistIsNoBendingBesideTheMiddle) {
+  const ModalDeck aside = imported_deck(deck(0.0, -3.0));
+  EXPECT_EQ(aside.first_bending, 0);
+  EXPECT_EQ(aside.third_bending, 3);
+  EXPECT_NEAR(aside.cut_off(), 36.0, 1e-9);
 }
 
 TEST_F(BeamFiles, OneSpanIsTheBuiltInOne) {

@@ -17,6 +17,7 @@
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/fe/mode_files.hpp"
 #include "railtab/runtime/moving_load/static_deflection.hpp"
 #include "railtab/runtime/moving_load/train_passage.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
@@ -294,6 +295,22 @@ TEST_F(ModesOfABridge, WhatIsWrittenIsReadAgain) {
   const double other = at(30.0).dot(moved);
   EXPECT_NEAR(own, std::pow(20.0, 3) / (48.0 * span.E * span.Iy), 0.02 * own);
   EXPECT_LT(std::abs(other), 1e-6 * own);
+}
+
+/// Damping in proportion to the stiffness grows with the frequency, beyond what files of modes hold.
+TEST_F(ModesOfABridge, ModesAreWrittenBelowCriticalDamping) {
+  BridgeParameters span;
+  span.length = 20.0;
+  span.elements = 10;
+  span.damping_ratio = 0.15;
+  const ModalStructure written = modes_at_deck({span}, 30);
+  EXPECT_GT(written.omega.size(), 5);
+  EXPECT_LT(written.omega.size(), 30);
+  EXPECT_EQ(written.shape.cols(), written.omega.size());
+  EXPECT_LE(written.damping.maxCoeff(), most_damping_ratio);
+  const ModalStructure read = read_modal_structure(scene(railtab::write_modes(written, folder_ / "damped")).structure);
+  EXPECT_TRUE(read.damping.isApprox(written.damping, 1e-12));
+  EXPECT_NEAR(read.whole_flexibility.begin()->second / written.whole_flexibility.begin()->second, 1.0, 1e-12);
 }
 
 /// The demo's train and bridge on wheels that follow the rails, and the same on the modes that vsi structure exports.

@@ -216,28 +216,64 @@ TEST(Fragility, HasNoCurveWhereTheLikelihoodHasNoMaximum) {
   EXPECT_FALSE(fit_fragility({{2.0, 10, 0}, {3.0, 10, 0}}));
 }
 
-// 95 % intervals of the median cover the true one in 90 to 99 % of 200 experiments: 95 % within three standard errors.
-TEST(Fragility, BootstrapIntervalsCoverTheTruth) {
-  constexpr double median = 30.0, deviation = 0.3;
-  int covered = 0, fits = 0;
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    std::vector<FragilityLevel> levels;
-    std::uint32_t number = 0;
-    for (const double x : {18.0, 22.0, 26.0, 30.0, 34.0, 40.0, 48.0}) {
-      FragilityLevel& level = levels.emplace_back(FragilityLevel{x, 60, 0});
-      for (int run = 0; run < 60; ++run) {
-        level.exceeded += normal_random(seed, {number++, 0, 99}) < std::log(x / median) / deviation;
-      }
+/// What each of `count` samples does at every intensity: exceeded where its capacity, lognormal, is reached.
+enum class Capacity { of_sample, of_run };
+std::vector<FragilitySample> samples_of_capacity(Capacity capacity, const FragilityCurve& curve, std::uint32_t count,
+                                                 const std::vector<double>& intensities, std::uint64_t seed) {
+  std::vector<FragilitySample> samples;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    FragilitySample& sample = samples.emplace_back();
+    for (std::uint32_t i = 0; i < intensities.size(); ++i) {
+      const double z = normal_random(seed, {k, capacity == Capacity::of_run ? i : 0, 99});
+      sample.runs.push_back(1);
+      sample.exceeded.push_back(z < std::log(intensities[i] / curve.median) / curve.deviation);
     }
-    const FragilityFit fit = fragility_with_bounds(levels, {200, 0.95, seed});
-    ASSERT_TRUE(fit.curve);
-    ++fits;
-    covered += fit.median.low <= median && median <= fit.median.high;
-    EXPECT_LT(fit.median.low, fit.median.high);
-    EXPECT_EQ(fit.at_levels.size(), levels.size());
   }
-  EXPECT_GE(covered, 0.90 * fits);
-  EXPECT_LE(covered, 0.99 * fits);
+  return samples;
+}
+
+// 95 % intervals cover the true median and deviation in 90 to 99 % of 200 experiments, 95 % within three standard
+// errors: where the runs of a sample are independent, and where they have one capacity.
+TEST(Fragility, BootstrapIntervalsCoverTheTruth) {
+  const FragilityCurve truth{30.0, 0.3};
+  const std::vector<double> intensities{18.0, 22.0, 26.0, 30.0, 34.0, 40.0, 48.0};
+  for (const Capacity capacity : {Capacity::of_run, Capacity::of_sample}) {
+    int median = 0, deviation = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      const FragilityFit fit = fragility_with_bounds(
+          intensities, samples_of_capacity(capacity, truth, 60, intensities, seed), {200, 0.95, seed});
+      ASSERT_TRUE(fit.curve);
+      median += fit.median.low <= truth.median && truth.median <= fit.median.high;
+      deviation += fit.deviation.low <= truth.deviation && truth.deviation <= fit.deviation.high;
+      EXPECT_LT(fit.median.low, fit.median.high);
+      EXPECT_EQ(fit.at_levels.size(), intensities.size());
+    }
+    for (const int covered : {median, deviation}) {
+      EXPECT_GE(covered, 180);
+      EXPECT_LE(covered, 198);
+    }
+  }
+}
+
+// More intensities of the same samples add no samples: the error of the mean of ln x stays above β/√n.
+TEST(Fragility, BoundsDoNotShrinkWithIntensities) {
+  const FragilityCurve truth{30.0, 0.3};
+  constexpr std::uint32_t count = 100;
+  const double least = 2.0 * normal_quantile(0.975) * truth.deviation / std::sqrt(count);
+  for (const int levels : {5, 20, 80}) {
+    std::vector<double> intensities;
+    for (int i = 0; i < levels; ++i) intensities.push_back(truth.median * std::exp(0.9 * (2.0 * i / (levels - 1) - 1)));
+    const FragilityFit fit = fragility_with_bounds(
+        intensities, samples_of_capacity(Capacity::of_sample, truth, count, intensities, 1), {500, 0.95, 1});
+    EXPECT_GT(std::log(fit.median.high / fit.median.low), 0.8 * least) << levels;
+  }
+}
+
+TEST(Fragility, HasNoBoundsOfOneSample) {
+  const FragilityFit fit = fragility_with_bounds({2.0, 3.0}, {{{10, 10}, {2, 7}}}, {});
+  EXPECT_TRUE(fit.curve);
+  EXPECT_TRUE(fit.at_levels.empty());
+  EXPECT_EQ(fit.replicates, 0U);
 }
 
 // Ishigami function sin x1 + 7 sin² x2 + 0.1 x3⁴ sin x1 on (−π, π)³ with its closed-form variances [SaltelliEtAl2010].

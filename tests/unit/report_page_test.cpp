@@ -392,6 +392,14 @@ TEST(ReportPage, RunWithoutRecordsBridgeOrOutlinesIsStillAPage) {
   EXPECT_EQ(page.find("<figure"), std::string::npos);
 }
 
+TEST(ReportPage, HeadNamesTheProfilesThatThereAre) {
+  RunResults run = small_run();
+  EXPECT_EQ(markup(report_page(run)).find(" on rail "), std::string::npos) << "rigid wheels";
+  run.header.wheel_profile = "S1002";
+  run.header.rail_profile = "60E1";
+  EXPECT_NE(markup(report_page(run)).find(" s; wheel S1002 on rail 60E1</p>"), std::string::npos);
+}
+
 // A scene records what it chooses: what it leaves out leaves no empty figure behind.
 TEST(ReportPage, ChannelsThatWereNotRecordedAreNotShown) {
   RunResults run = small_run();

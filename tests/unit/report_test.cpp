@@ -129,6 +129,24 @@ TEST(Headline, TakesTheWheelsExtremesOfAllStepsWhereTheSummaryHasThem) {
   EXPECT_EQ(headline.derailment_2m.value, recorded.derailment_2m.value);
 }
 
+// Wheels without a profile have no lateral forces, and a train in the vertical plane no lateral motion.
+TEST(Headline, RigidWheelsHaveNoLateralExtremes) {
+  RunResults run = long_run(200, 2);
+  ASSERT_TRUE(headline_of(run).derailment_2m.found());
+  run.header.wheel_y.clear();
+  run.header.wheel_z.clear();
+  run.summary.wheel_extremes.largest_Q = {60e3, 0.1, 0};
+  for (StepRecord& step : run.steps) {
+    for (WheelRecord& wheel : step.wheels) wheel.Y = 0.0;
+    for (MotionRecord& body : step.bodies) body.acceleration[1] = 0.0;
+  }
+  const Headline headline = headline_of(run);
+  EXPECT_FALSE(headline.derailment.found() || headline.derailment_2m.found() || headline.track_shift_2m.found());
+  EXPECT_FALSE(headline.car_body_lateral.found());
+  EXPECT_TRUE(headline.largest_Q.found() && headline.unloading.found() && headline.car_body_vertical.found());
+  EXPECT_EQ(headline.extent, "the recorded steps; Q and unloading of all steps");
+}
+
 TEST(Headline, SlidingMeansAreOverTwoMetresOfWay) {
   RunResults run = small_run();
   const StepRecord pattern = run.steps[1];

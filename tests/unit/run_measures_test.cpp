@@ -164,6 +164,131 @@ TEST(RunMeasures, UnloadingDurationOfASine) {
   EXPECT_EQ(of(found, "unloading_duration").where, "wheelset 1 left");
 }
 
+// Above the limit longest from t = 1 to 1.5 s, and most at 4 s: each has its own time and place.
+TEST(RunMeasures, UnloadingDurationHasThePlaceOfTheLongestInterval) {
+  RunResults results = made_run();
+  for (StepRecord& r : results.steps) {
+    const bool longest = r.time > 0.9995 && r.time<1.4995, most = r.time> 3.9995 && r.time < 4.0995;
+    r.wheels[0].Q = Q0 * (longest ? 0.35 : most ? 0.0 : 1.0);
+  }
+  const RunMeasures found = run_measures(results, {-100.0, 30.0, 20.0, 0.3});
+  const MeasuredValue &duration = of(found, "unloading_duration"), &largest = of(found, "wheel_unloading_unfiltered");
+  EXPECT_NEAR(duration.value, 0.5, 2e-3);
+  EXPECT_NEAR(*duration.time, 1.0, 2e-3);
+  EXPECT_NEAR(*duration.x, -100.0 + speed * *duration.time, 1e-9);
+  EXPECT_NEAR(*largest.time, 4.0, 1e-9);
+}
+
+/// A second wheelset, whose left wheel climbs.
+RunResults with_second_wheelset() {
+  RunResults results = made_run();
+  results.header.wheel_x = {0.0, 0.0, -2.5, -2.5};
+  results.header.static_wheel_load.assign(4, Q0);
+  for (StepRecord& r : results.steps) {
+    r.wheels.resize(4);
+    r.wheels[2] = {.Q = Q0, .Y = 0.7 * Q0};
+    r.wheels[3] = {.Q = Q0};
+  }
+  return results;
+}
+
+Verdict verdict_of(const std::vector<Clause>& clauses, const RunMeasures& found, std::string_view id) {
+  const std::vector<Verdict> verdicts = judge(clauses, {"ballasted", 250.0 / 3.6}, found.values, found.missing);
+  return *std::ranges::find_if(verdicts, [&](const Verdict& v) { return v.clause->id == id; });
+}
+
+// Loads that differ by rounding have one limit, and one row.
+TEST(RunMeasures, LoadsThatDifferByRoundingAreOne) {
+  RunResults results = with_second_wheelset();
+  const auto rows = [&](double other_load) {
+    results.header.static_wheel_load[2] = results.header.static_wheel_load[3] = other_load;
+    const RunMeasures found = run_measures(results, {-100.0, 30.0, 20.0, 0.3});
+    return std::ranges::count(found.values, "wheel_force", &MeasuredValue::measure);
+  };
+  EXPECT_EQ(rows(Q0 * (1.0 + 1e-13)), 1);
+  EXPECT_EQ(rows(Q0 * (1.0 + 1e-6)), 2);
+}
+
+// Limits of the flange are those of wheels whose profile the results hold.
+TEST(RunMeasures, OtherProfilesAreNotJudgedByTheFlangeOfTheFirst) {
+  RunResults results = with_second_wheelset();
+  const std::vector<Clause> clauses = library_clauses();
+  const RunWindow window{-100.0, 30.0, 20.0, 0.3};
+  EXPECT_EQ(verdict_of(clauses, run_measures(results, window), "nadal").outcome, Outcome::pass);
+  results.header.wheel_outline = {1.0, 1.0, 0.0, 0.0};
+  const RunMeasures mixed = run_measures(results, window);
+  ASSERT_EQ(std::ranges::count(mixed.values, "derailment", &MeasuredValue::measure), 2);
+  for (const MeasuredValue& value : mixed.values) {
+    if (value.measure != "derailment") continue;
+    const bool first = value.where == "wheelset 1 left";
+    EXPECT_NEAR(value.value, first ? 0.2 / 0.7 : 0.7, 1e-6) << value.where;
+    EXPECT_EQ(value.quantities.contains("nadal_limit"), first) << value.where;
+  }
+  EXPECT_EQ(std::ranges::count(mixed.values, "wheel_unloading", &MeasuredValue::measure), 1);
+  const Verdict nadal = verdict_of(clauses, mixed, "nadal");
+  EXPECT_EQ(nadal.outcome, Outcome::not_judged);
+  EXPECT_EQ(nadal.reason,
+            "nadal_limit of wheelset 2 left is not known: the results hold the profile of other wheels alone");
+  EXPECT_EQ(verdict_of(clauses, mixed, "weinstock").outcome, Outcome::not_judged);
+  for (StepRecord& r : results.steps) r.wheels[0].Y = 3.0 * Q0;
+  EXPECT_EQ(verdict_of(clauses, run_measures(results, window), "nadal").outcome, Outcome::fail) << "the first one does";
+}
+
+TEST(RunMeasures, AConeHasNoFlange) {
+  RunResults results = made_run();
+  for (std::size_t i = 0; i < results.header.wheel_y.size(); ++i) {
+    results.header.wheel_z[i] = -results.header.wheel_y[i] / 20.0;
+  }
+  const std::vector<Clause> clauses = library_clauses();
+  const RunMeasures found = run_measures(results, {-100.0, 30.0, 20.0, 0.3});
+  const Verdict nadal = verdict_of(clauses, found, "nadal");
+  EXPECT_EQ(nadal.outcome, Outcome::not_judged);
+  EXPECT_NE(nadal.reason.find("nowhere steeper than 2.9 degrees"), std::string::npos) << nadal.reason;
+}
+
+// Accelerations of car bodies without a lateral one.
+TEST(RunMeasures, CarBodiesThatDoNotMoveLaterallyHaveNoLateralMeasures) {
+  RunResults results = made_run();
+  for (StepRecord& r : results.steps) r.bodies[0].acceleration[1] = 0.0;
+  const RunMeasures found = run_measures(results, {-100.0, 30.0, 20.0, 0.3});
+  for (const char* measure : {"car_body_lateral", "car_body_lateral_6hz", "comfort_lateral", "running_rms_lateral",
+                              "vibration_dose_lateral", "sperling_lateral"}) {
+    EXPECT_EQ(std::ranges::count(found.values, measure, &MeasuredValue::measure), 0) << measure;
+    const auto missing = std::ranges::find(found.missing, measure, &MissingMeasure::measure);
+    ASSERT_NE(missing, found.missing.end()) << measure;
+    EXPECT_NE(missing->reason.find("none moves laterally"), std::string::npos) << missing->reason;
+  }
+  EXPECT_NEAR(of(found, "car_body_vertical").value, 0.2, 1e-6);
+}
+
+/// Every n-th record.
+RunResults thinned(int n) {
+  RunResults results = made_run();
+  std::vector<StepRecord> some;
+  for (std::size_t k = 0; k < results.steps.size(); k += static_cast<std::size_t>(n)) some.push_back(results.steps[k]);
+  results.steps = some;
+  return results;
+}
+
+TEST(RunMeasures, WeightedMeasuresNeedNearRecords) {
+  const RunWindow window{-100.0, 30.0, 20.0, 0.3};
+  const double weighted = 0.2 / std::numbers::sqrt2 * std::abs(weighting_b.response(5.0));
+  EXPECT_NEAR(of(run_measures(thinned(2), window), "comfort_vertical").value, weighted, 0.01 * weighted);
+  const RunMeasures far = run_measures(thinned(10), window);
+  for (const char* measure : {"comfort_vertical", "comfort_lateral", "comfort_longitudinal", "mean_comfort",
+                              "mean_comfort_seated", "mean_comfort_standing", "running_rms_vertical",
+                              "running_rms_lateral", "vibration_dose_vertical", "vibration_dose_lateral"}) {
+    EXPECT_EQ(std::ranges::count(far.values, measure, &MeasuredValue::measure), 0) << measure;
+    const auto missing = std::ranges::find(far.missing, measure, &MissingMeasure::measure);
+    ASSERT_NE(missing, far.missing.end()) << measure;
+    EXPECT_EQ(missing->reason, "records 0.01 s apart are too far for the frequency weighting, at most 0.002 s");
+  }
+  EXPECT_NEAR(of(far, "sperling_vertical").value,
+              std::pow(20.0 * sperling_weighting(SperlingDirection::vertical, 5.0), 0.3), 1e-6);
+  EXPECT_NEAR(of(far, "car_body_vertical").value, 0.2, 1e-6);
+  EXPECT_GT(of(far, "car_body_vertical_6hz").value, 0.1);
+}
+
 // Mean comfort takes five minutes, and all three directions. After 200 s, 40 of the 60 windows, motions are larger.
 TEST(RunMeasures, MeanComfortOfFiveMinutes) {
   constexpr double coarse = 2e-3, later = 3.0;
@@ -280,6 +405,12 @@ TEST(RunMeasures, EnvelopeOfAnotherCutOffOrOfAKilledRunIsNotTaken) {
   ASSERT_NE(missing, other.missing.end());
   EXPECT_EQ(missing->reason, "output.deck_cut_off is 40 Hz, and the decks ask for 30 Hz");
   EXPECT_EQ(of(other, "deck_acceleration_unfiltered").value, 7.0);
+  // a lower one than is asked for: that of steps too long
+  const RunMeasures slow = run_measures(with_envelope(20.0), {-100.0, 30.0, 20.0, 0.3});
+  EXPECT_EQ(std::ranges::find(slow.missing, "deck_acceleration", &MissingMeasure::measure)->reason,
+            "output.deck_cut_off is 20 Hz, and the decks ask for 30 Hz, which takes integration.time_step of at most "
+            "0.00833 s");
+  EXPECT_EQ(of(slow, "deck_twist").value, 1.6e-3) << "needs no filter";
   RunResults killed = with_envelope(30.0);
   killed.summary.deck.clear();
   const RunMeasures recorded = run_measures(killed, {-100.0, 30.0, 20.0, 0.3});

@@ -141,6 +141,15 @@ TEST_F(Scene, NumbersOutOfRangeAreRejected) {
             -0.3333333333333333);
 }
 
+TEST_F(Scene, RailInclinationIsOfBuiltInRails) {
+  const std::string inclined = std::string(online) + "rail_inclination = \"1:20\"\n";
+  EXPECT_EQ(read(inclined + "rail = \"uic60\"\n").contact.rail_inclination, 0.05);
+  write("rail.txt", "stands for a profile");
+  EXPECT_EQ(message(inclined + "rail = \"rail.txt\"\n"),
+            "scene.toml:3: contact.rail_inclination: found the file contact.rail = \"rail.txt\", expected a built-in "
+            "contact.rail, or no contact.rail_inclination");
+}
+
 TEST_F(Scene, RailInclinationAsRatioOrNumber) {
   EXPECT_DOUBLE_EQ(read(std::string(online) + "rail_inclination = \"1:40\"\n").contact.rail_inclination, 0.025);
   EXPECT_EQ(read(std::string(online) + "rail_inclination = 0.05\n").contact.rail_inclination, 0.05);
@@ -273,6 +282,7 @@ length = 30
   rejected({"train.speeed", "1"}, "did you mean 'train.speed'");
   rejected({"bridge.length", "1"}, "found 2 [[bridge]] in the scene");
   rejected({"bridge.3.length", "1"}, "found 2 [[bridge]] in the scene");
+  rejected({"bridge.01.length", "1"}, "bridge.01.length: found the number 01, expected 1, without a zero before it");
   rejected({"load.1.start", "1"}, "found 0 [[load]] in the scene");
   rejected({"train.speed_kmh.x", "1"}, "found speed_kmh, which is no section");
   rejected({"", "1"}, "unknown key ''");

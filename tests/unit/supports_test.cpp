@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "railtab/runtime/structure/fe_supports.hpp"
 #include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
@@ -79,6 +80,23 @@ TEST(Supports, OneSupportThatSettlesTurnsItsSpan) {
   // nearly rigid spans: the rails hold them back by less than a thousandth
   EXPECT_NEAR(u[m.nodes[0].dof[2]], 0.005, 5e-6) << m.nodes[0].name;
   EXPECT_NEAR(u[m.nodes[3].dof[2]], 0.005, 5e-6) << m.nodes[3].name;
+}
+
+// A deck node of a model of the vertical plane has z alone: what has no row is what is named.
+TEST(Supports, ADeckNodeThatNothingMovesNamesTheMissingMotion) {
+  const auto beyond = [](const FeNode& node) {
+    FeStructure structure;
+    structure.nodes[7] = node;
+    StructureSupports supports;
+    stand_on_ground({7}, structure, supports);
+    return supports.beyond;
+  };
+  FeNode node;
+  EXPECT_EQ(beyond(node), "whose deck node 7 has no row of y and none of z, and no [[support]] that holds it there");
+  node.rows[2] = {0};
+  EXPECT_EQ(beyond(node), "whose deck node 7 has no row of y, and no [[support]] that holds it there");
+  node.support[0] = 0;
+  EXPECT_EQ(beyond(node), "");
 }
 
 TEST(VerticalPlane, TrackAndBridgeDeflectAsInThreeDimensions) {

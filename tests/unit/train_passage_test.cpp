@@ -134,6 +134,29 @@ TEST(TrainPassage, ShapesAreSinesOfModalMassOne) {
   }
 }
 
+/// Beside the axis at e the span twists too: at rest a load in the middle deflects the track there by
+/// PL³/(48 EI) + P e² L/(4 GJ).
+TEST(TrainPassage, ATrackBesideTheAxisTwistsTheSpan) {
+  BridgeParameters p = span();
+  p.track_offset = -2.3;
+  p.G = 14.4e9;
+  p.J = 0.5;
+  p.rotary_inertia = 150e3;
+  const ModalDeck deck = simply_supported_deck(p), central = simply_supported_deck(span());
+  EXPECT_NEAR(deck.first_frequency(), central.first_frequency(), 1e-12);
+  EXPECT_NEAR(deck.cut_off(), central.cut_off(), 1e-9);
+  const double twist = std::sqrt(p.G * p.J / p.rotary_inertia) / (2.0 * p.length);
+  EXPECT_NEAR(deck.frequency(1), twist, 1e-9 * twist) << "between the first and the second bending mode";
+  EXPECT_NEAR(deck.frequency(2), 2.0 * twist, 1e-9 * twist);
+  AxleTrain axle;
+  axle.behind = {0.0};
+  axle.load = {200e3};
+  const double L = p.length, bending = 200e3 * L * L * L / (48.0 * p.E * p.Iy),
+               torsion = 200e3 * 2.3 * 2.3 * L / (4.0 * p.G * p.J);
+  EXPECT_NEAR(largest_static_deflection(deck, axle).value, bending + torsion, 0.01 * torsion);
+  EXPECT_GT(torsion, 0.2 * bending);
+}
+
 TEST(TrainPassage, SixReferenceWagonsAtRest) {
   const StaticDeflection found =
       largest_static_deflection(simply_supported_deck(span()), find_axle_train("en15528-d2*6", 25.0));

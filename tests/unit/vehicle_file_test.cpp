@@ -298,7 +298,47 @@ TEST(VehicleFile, RejectsValuesWithFileLineAndKey) {
                   {"connection[1].friction_y: found dry friction in a connection with a damper of its own",
                    "a [[connection]] for each"});
   expect_rejected(wagon + "friction_ratio_y = 11\n", {"connection[1].friction_ratio_y: found 11"});
+  for (const char* none : {"0", "0.0", "{ value = 0, source = \"drawing\" }"}) {
+    expect_rejected(wagon + "series_kz = " + none + "\n",
+                    {"connection[1].series_kz: found 0, expected more than 0 N/m, or no series_kz"});
+  }
   expect_rejected("name = ", {"coach.toml:1: "});
+}
+
+TEST(VehicleFile, KeysOfLateralMotionHaveNoEffectOnVerticalData) {
+  const std::string vertical = library_vehicle("velaro-e-coach").text;
+  const auto expect_idle = [&](const std::string& section, const std::string& key, const std::string& path) {
+    expect_rejected(replaced(vertical, section + "\n", section + "\n" + key + " = 1.0\n"),
+                    {path + ": found a key that has no effect with motion = \"vertical\"", "expected no " + path});
+  };
+  expect_idle("[car_body]", "Jx", "car_body.Jx");
+  expect_idle("[car_body]", "height", "car_body.height");
+  expect_idle("[wheelset]", "Jy", "wheelset.Jy");
+  expect_idle("[primary]", "half_distance", "primary.half_distance");
+  expect_idle("[secondary]", "ky", "secondary.ky");
+  expect_idle("[secondary]", "bending", "secondary.bending");
+  expect_rejected(vertical + "[roll_bar]\nstiffness = 1e6\n", {"roll_bar: found a key that has no effect"});
+  expect_rejected(vertical +
+                      "[[connection]]\nname = \"stay\"\njoins = [[\"bogie-1\", \"car-body\"]]\nkz = 1.0\n"
+                      "k_yaw = 1.0\n",
+                  {"connection[1].k_yaw: found a key that has no effect with motion = \"vertical\""});
+  expect_rejected(replaced(vertical, "[car_body]\n", "[car_body]\nmas = 1.0\n"), {"did you mean 'car_body.mass'?"});
+}
+
+/// What lies 10 t heavy on the car body of the wagon, beside the middle.
+std::string one_sided_load(double y) {
+  return "[[body]]\nname = \"load\"\nx = 0.0\ny = " + std::to_string(y) +
+         "\nheight = 1.5\nmass = 10000.0\nJx = 5e3\nJy = 5e3\nJz = 5e3\n[[connection]]\nname = \"lashing\"\n"
+         "joins = [[\"load\", \"car-body\"]]\ny = " +
+         std::to_string(y) + "\nheight = 1.5\nkx = 1e8\nky = 1e8\nkz = 1e8\nk_roll = 1e8\nk_pitch = 1e8\nk_yaw = 1e8\n";
+}
+
+// Of each wheelset's 161.9 kN a load at y takes 32.7 kN per metre from one wheel and gives them to the other.
+TEST(VehicleFile, RejectsLoadsThatLiftWheels) {
+  expect_rejected(wagon + one_sided_load(3.0),
+                  {"coach.toml: wagon: found wheelset-1 whose left wheel carries -17167.5 N",
+                   "expected a vehicle that stands on all its wheels"});
+  expect_rejected(wagon + one_sided_load(2.1), {"no InputError"});
 }
 
 TEST(VehicleFile, RejectsConnectionsThatDoNothing) {
@@ -374,6 +414,20 @@ TEST_F(VehicleInScene, IsAFileBesideIt) {
   EXPECT_TRUE(plan.warnings.empty());
 }
 
+// On narrow gauge the rails are too near to each other for a load that standard gauge carries.
+TEST_F(VehicleInScene, WithoutEquilibriumNamesWeightBesideTheMiddle) {
+  write("wagon.toml", wagon + one_sided_load(2.1));
+  const SceneParameters narrow = scene("vehicle = \"wagon.toml\"\nspeed_kmh = 20",
+                                       online + "\ndimensions.track_gauge = 1.0\ndimensions.flange_back = 0.925");
+  EXPECT_EQ(narrow.contact.dimensions.track_gauge, 1.0);
+  const RunSummary run = Scene(folder_ / "scene.toml").run([](const StepRecord&) {});
+  EXPECT_FALSE(run.complete);
+  EXPECT_NE(run.message.find("there is one with the weight in the middle between the rails: at wheelset 1 of vehicle 1 "
+                             "the left wheel would carry -15.8 kN"),
+            std::string::npos)
+      << run.message;
+}
+
 TEST_F(VehicleInScene, IsRejectedByTheSceneWhereThereIsNone) {
   const auto message = [&](const std::string& vehicle, const std::string& contact) -> std::string {
     try {
@@ -412,6 +466,23 @@ TEST_F(VehicleInScene, WarnsAboveItsTopSpeed) {
   ASSERT_EQ(later.size(), 2U);
   EXPECT_NE(later[0].find("130 km/h, and the top speed of wagon"), std::string::npos) << later[0];
   EXPECT_NE(later[1].find("speed.csv changes the speed by forces on the car bodies"), std::string::npos) << later[1];
+}
+
+/// Rails of the track that are not where the contact's gauge has them.
+TEST_F(VehicleInScene, WarnsOfTrackOffTheGauge) {
+  const auto told = [&](const std::string& half) {
+    write("scene.toml",
+          "[contact]\nmode = \"online\"\n[track]\nlength_before = 30\nlength_after = 30\nhalf_rail_distance = " + half +
+              "\n[integration]\nduration = 0.1\n");
+    const SceneParameters parameters = read_scene(folder_ / "scene.toml");
+    std::string all;
+    for (const std::string& warning : scene_warnings(parameters, build_model(parameters))) all += warning + "\n";
+    return all;
+  };
+  const std::string off = "from the track centre, at a gauge of 1.435 m";
+  EXPECT_EQ(told("0.7").find(off), std::string::npos);
+  EXPECT_NE(told("0.25").find("track.half_rail_distance = 0.25 m: contact is on rail heads"), std::string::npos);
+  EXPECT_NE(told("1.1").find(off), std::string::npos);
 }
 
 /// Scenes on S1002 and 60E1 in which vehicles hunt, or are about to.

@@ -129,6 +129,9 @@ TEST(Vehicle, ThatFallsOverIsRejected) {
     FAIL() << "a frame 400 m above its springs stands";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("falls over under its weight"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("springs that resist sideways motion, and roll and pitch"),
+              std::string::npos)
+        << error.what();
   }
 }
 
@@ -262,6 +265,44 @@ TEST(Vehicle, RejectsWhatIsNoVehicle) {
                 .find("v: found rear that carries -19620 N, expected a vehicle that stands on all its wheelsets"),
             std::string::npos)
       << assemble({axle, rear, overhanging}, {front_spring, rear_spring}, {0, 1});
+}
+
+TEST(Vehicle, WeightsThatNoSpringCarriesAreThoseOfOneBody) {
+  const RigidBody axle{"axle", 1000, {500, 60, 500}, {0, 0, -0.5}};
+  const RigidBody box{"box", 3000, {500, 500, 500}, {0, 0, -1.0}, 0};
+  RigidBody heavy = box;
+  heavy.name = "heavy";
+  heavy.mass = 6000;
+  heavy.coach = 1;
+  const auto message = [](const std::vector<RigidBody>& bodies, const std::vector<Suspension>& suspension,
+                          int coaches) {
+    return message_of([&] { (void)assemble_vehicle({"v", bodies, suspension, {0}, {}, 0.5, 10.0, coaches}); });
+  };
+  EXPECT_NE(message({axle, box, heavy}, {}, 1).find("found a weight of 5.89e+04 N of heavy that no spring carries"),
+            std::string::npos)
+      << message({axle, box, heavy}, {}, 1);
+  EXPECT_NE(message({axle, box, heavy}, {}, 2).find("of heavy of vehicle 2 that no spring carries"), std::string::npos)
+      << message({axle, box, heavy}, {}, 2);
+  const Suspension ahead{0, 1, {0.5, 0, -0.5}, {1e6, 1e6, 1e6}, {0, 0, 0}};
+  EXPECT_NE(message({axle, box}, {ahead}, 1).find("2.94e+04 N of box that its springs do not hold in balance"),
+            std::string::npos)
+      << message({axle, box}, {ahead}, 1);
+}
+
+// The box beside the middle turns the axle by 58860 N m, 39240 N of which each of the wheels 1.5 m apart takes.
+TEST(Vehicle, NoWheelIsPulledDown) {
+  const RigidBody axle{"axle", 1000, {500, 60, 500}, {0, 0, -0.5}};
+  const Suspension spring{0, 1, {0, 0, -0.5}, {1e6, 1e6, 1e6}, {0, 0, 0}, {1e6, 1e6, 1e6}};
+  const auto message = [&](double y) {
+    const RigidBody box{"box", 3000, {500, 500, 500}, {0, y, -1.0}};
+    return message_of([&] { (void)assemble_vehicle({"v", {axle, box}, {spring}, {0}, {}, 0.5, 10.0}); });
+  };
+  EXPECT_NE(message(2.0).find("v: found axle whose left wheel carries -19620 N, expected a vehicle that stands on all "
+                              "its wheels"),
+            std::string::npos)
+      << message(2.0);
+  EXPECT_NE(message(-2.0).find("axle whose right wheel carries -19620 N"), std::string::npos) << message(-2.0);
+  EXPECT_EQ(message(0.9), "no InputError");  // of 1 m that load one wheel alone
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "../moments_at_rails.hpp"
 #include "body_balance.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
@@ -291,6 +292,8 @@ TEST(Cant, LateralAccelerationThatItDoesNotBalanceOverturns) {
   const VsiState state = at_rest(model);
   const double cosine = std::sqrt(1.0 - sine * sine), uncompensated = acceleration * cosine - standard_gravity * sine;
   EXPECT_NEAR(model.vehicle.gravity, standard_gravity * cosine + acceleration * sine, 1e-12);
+  const double Q0 = static_wheel_load(build_model(coach_on_rigid_track()).vehicle, 0);  // of level track in any curve
+  for (const double load : model_header(model).static_wheel_load) EXPECT_NEAR(load, Q0, 1e-9 * Q0);
   const double centrifugal = uncompensated * mass_times_height(model.vehicle);
   const double moment = centrifugal + moment_of_weights(model, state);
   const double percent = 100 * (moment_at_rails(model, state) / moment - 1);

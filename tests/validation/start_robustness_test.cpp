@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/line/rail_friction.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_run.hpp"
@@ -192,6 +193,30 @@ TEST(Start, WithoutFrictionOnFlexibleTrack) {
   VsiState state(model);
   ASSERT_TRUE(static_equilibrium(model, state).converged);
   EXPECT_NEAR(carried(state) / train_weight(model), 1.0, 1e-6);
+}
+
+// Next to no friction, of the whole track or where the train stands, is no reason for a train not to rest.
+TEST(Start, WithNextToNoFriction) {
+  for (const TrackKind track : {TrackKind::rigid, TrackKind::flexible}) {
+    SceneParameters scene = coach_on_rigid_track(20.0);
+    scene.track_kind = track;
+    scene.track.length_before = scene.track.length_after = 30.0;
+    VsiModel model = build_model(scene);
+    const auto rests = [&] {
+      VsiState state(model);
+      const bool converged = static_equilibrium(model, state).converged;
+      return converged && std::abs(carried(state) / train_weight(model) - 1.0) < 1e-6;
+    };
+    for (const double friction : {1e-3, 1e-4, 1e-6, 1e-9}) {
+      model.contact.friction = friction;
+      EXPECT_TRUE(rests()) << friction;
+    }
+    model.contact.friction = 0.3;
+    model.rail_friction = RailFriction({0.0, 1.0}, {0.0, 0.0}, {0.0, 0.0});
+    EXPECT_TRUE(rests()) << "a file of zeros";
+    model.rail_friction = RailFriction({-15.0, -10.0}, {0.0, 0.3}, {0.0, 0.3});
+    EXPECT_TRUE(rests()) << "rear wheelsets without friction";
+  }
 }
 
 SceneParameters coach_on_flexible_track() {

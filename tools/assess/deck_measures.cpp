@@ -51,8 +51,13 @@ class DeckJudge : public RunJudge {
       const auto measure = std::ranges::find(envelope_measures, header_.deck[q].quantity, &EnvelopeMeasure::quantity);
       if (measure == envelope_measures.end()) continue;
       if (!fast && measure->name == "deck_acceleration") {
-        miss({"deck_acceleration"}, fmt::format("output.deck_cut_off is {:.4g} Hz, and the decks ask for {:.4g} Hz",
-                                                header_.deck_cut_off, window_.deck_cut_off));
+        const double asked = window_.deck_cut_off;
+        const std::string steps =
+            header_.deck_cut_off < asked
+                ? fmt::format(", which takes integration.time_step of at most {:.3g} s", longest_low_pass_step(asked))
+                : "";
+        miss({"deck_acceleration"}, fmt::format("output.deck_cut_off is {:.4g} Hz, and the decks ask for {:.4g} Hz{}",
+                                                header_.deck_cut_off, asked, steps));
         continue;
       }
       const DeckPlaces& places = header_.deck[q];

@@ -66,7 +66,8 @@ std::vector<SpeedBand> merged(std::vector<SpeedBand> bands, const Clause& clause
   return apart;
 }
 
-/// Why the acceleration is smaller on a track; empty where axles that come on to a free end have no part in it.
+/// Why the acceleration is smaller on a track; empty where a single axle load that comes on to a free end has little
+/// part in it. What many such loads excite by resonance is not told apart.
 std::string overestimated(const ModalDeck& deck, const AxleTrain& train, const DeckPeak& peak) {
   constexpr double part = 0.1;  // of the value: a smaller one decides nothing
   if (train.load.empty()) return {};

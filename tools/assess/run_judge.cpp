@@ -18,9 +18,19 @@ void RunJudge::miss(const std::vector<std::string>& measures, const std::string&
   }
 }
 
-void RunJudge::raise(const std::string& measure, double value, const Spot& spot, double group) {
-  const double amount = std::abs(value);
-  MeasuredValue& best = best_[{measure, group}];
+double RunJudge::grouped(double static_load) {
+  constexpr double rounding = 1e-9;
+  const auto same = std::ranges::find_if(
+      loads_, [&](double other) { return std::abs(static_load - other) <= rounding * std::abs(other); });
+  if (same != loads_.end()) return *same;
+  loads_.push_back(static_load);
+  return static_load;
+}
+
+void RunJudge::raise(const std::string& measure, double value, const Spot& spot, double static_load,
+                     const FlangeLimits* flange) {
+  const double amount = std::abs(value), load = grouped(static_load);
+  MeasuredValue& best = best_[{measure, load, flange ? flange->unknown : std::string()}];
   if (!best.measure.empty() && !(amount > best.value)) return;
   best.measure = measure;
   best.stage = AssessmentStage::contact;
@@ -30,21 +40,23 @@ void RunJudge::raise(const std::string& measure, double value, const Spot& spot,
   best.x = spot.x;
   best.y = spot.y;
   best.speed = header_.speed;
-  best.quantities["axle_load"] = 2.0 * group;
-  best.quantities["static_wheel_load"] = group;
-  for (const auto& [quantity, limit] : limits_) best.quantities[quantity] = limit;
+  best.quantities["axle_load"] = 2.0 * load;
+  best.quantities["static_wheel_load"] = load;
+  if (!flange) return;
+  for (const auto& [quantity, limit] : flange->values) best.quantities[quantity] = limit;
+  best.limits_unknown = flange->unknown;
 }
 
 void RunJudge::raise_sections(const std::string& measure, const SectionPercentiles& of, const std::string& name,
-                              double group) {
+                              double static_load, const FlangeLimits* flange) {
   for (const SectionRange& section : of.sections()) {
     raise(measure, section.extreme(), {fmt::format("{}, x = {:.4g} to {:.4g} m", name, section.from, section.to)},
-          group);
+          static_load, flange);
   }
 }
 
 bool RunJudge::has(std::string_view measure) const {
-  return std::any_of(best_.begin(), best_.end(), [&](const auto& best) { return best.first.first == measure; });
+  return std::any_of(best_.begin(), best_.end(), [&](const auto& best) { return std::get<0>(best.first) == measure; });
 }
 
 void RunJudge::keep() {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "railtab/runtime/measures/section_percentiles.hpp"
@@ -23,6 +23,12 @@ struct Spot {
   std::optional<double> time{}, x{}, y{};
 };
 
+/// Limits of Y/Q that follow from the flange of a wheel.
+struct FlangeLimits {
+  std::map<std::string, double, std::less<>> values;  ///< see MeasuredValue::quantities
+  std::string unknown;                                ///< why there are none
+};
+
 /// Records of a run, and the largest values found in them: what deck, wheels and car bodies are judged with.
 class RunJudge {
  public:
@@ -31,11 +37,13 @@ class RunJudge {
 
  protected:
   void miss(const std::vector<std::string>& measures, const std::string& reason);
-  /// Keeps the largest amount of a measure; `group` tells values with limits of their own, the static wheel load [N].
-  void raise(const std::string& measure, double value, const Spot& spot, double group = 0.0);
+  /// Keeps the largest amount of a measure, of values with limits of their own each: those differ in the static wheel
+  /// load [N], or in what is known of the flange.
+  void raise(const std::string& measure, double value, const Spot& spot, double static_load = 0.0,
+             const FlangeLimits* flange = nullptr);
   /// The largest percentile of a quantity in any of its sections.
   void raise_sections(const std::string& measure, const SectionPercentiles& of, const std::string& name,
-                      double group = 0.0);
+                      double static_load = 0.0, const FlangeLimits* flange = nullptr);
   [[nodiscard]] bool has(std::string_view measure) const;
   /// Hands the largest values over.
   void keep();
@@ -60,10 +68,14 @@ class RunJudge {
   RunWindow window_;
   std::size_t records_ = 0;
   double step_ = 0.0;
-  std::map<std::string, double, std::less<>> limits_;  ///< that values carry, see MeasuredValue::quantities
 
  private:
-  std::map<std::pair<std::string, double>, MeasuredValue> best_;
+  /// The first load of those that differ by rounding alone.
+  [[nodiscard]] double grouped(double static_load);
+
+  /// By measure, static wheel load and FlangeLimits::unknown.
+  std::map<std::tuple<std::string, double, std::string>, MeasuredValue> best_;
+  std::vector<double> loads_;  // grouped
   RunMeasures& found_;
 };
 

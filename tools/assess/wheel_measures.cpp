@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "headline.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/measures/rail_wear.hpp"
@@ -31,6 +33,22 @@ double flange_angle(const ResultHeader& header) {
   return steepest;
 }
 
+/// Of wheels with the outline of the header.
+FlangeLimits flange_limits(const ResultHeader& header, double friction) {
+  constexpr double degree = std::numbers::pi / 180.0, least = 45.0;  // of a flange
+  constexpr double fra_friction = 0.5;
+  const double angle = flange_angle(header);
+  if (angle < least * degree) {
+    return {{},
+            fmt::format("its profile is nowhere steeper than {:.1f} degrees, and a flange has {:g} degrees at least",
+                        angle / degree, least)};
+  }
+  const double nadal = nadal_limit(angle, friction);
+  return {
+      {{"nadal_limit", nadal}, {"weinstock_limit", nadal + friction}, {"fra_limit", nadal_limit(angle, fra_friction)}},
+      {}};
+}
+
 class WheelJudge : public RunJudge {
  public:
   using RunJudge::RunJudge;
@@ -53,13 +71,7 @@ class WheelJudge : public RunJudge {
       return miss(guiding, reason);
     }
     if (!guided) miss(guiding, "the scene's wheels have no lateral forces (contact.normal = \"rigid\")");
-    if (guided) {
-      constexpr double fra_friction = 0.5;
-      const double angle = flange_angle(header_), nadal = nadal_limit(angle, window_.friction);
-      limits_ = {{"nadal_limit", nadal},
-                 {"weinstock_limit", nadal + window_.friction},
-                 {"fra_limit", nadal_limit(angle, fra_friction)}};
-    }
+    if (guided) flange_ = flange_limits(header_, window_.friction);
     for (std::size_t w = 0; w + 1 < header_.static_wheel_load.size(); w += 2) wheelset(w, guided);
     for (const auto* measures : {&forces, &guiding}) {
       if (measures == &guiding && !guided) continue;
@@ -69,6 +81,10 @@ class WheelJudge : public RunJudge {
   }
 
  private:
+  [[nodiscard]] const FlangeLimits& flange_of(std::size_t wheel) const {
+    return header_.wheel_outline.empty() || header_.wheel_outline[wheel] == 1.0 ? flange_ : other_flange_;
+  }
+
   /// Needs no filter.
   void wear_and_pressure() {
     const std::vector<std::string> measures{"wear_number", "rail_wear", "contact_pressure"};
@@ -147,7 +163,7 @@ class WheelJudge : public RunJudge {
       }
       if (const auto mean = shift_5ft.add(x, sum)) raise("track_shift_5ft", *mean, spot, Q0);
       if (Q[0][k] > least_share * Q0 && Q[1][k] > least_share * Q0) {
-        raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), spot);
+        raise("weinstock_sum", weinstock_ratio(Y[0][k], Q[0][k], Y[1][k], Q[1][k]), spot, 0.0, &flange_of(left));
       }
     }
     raise_sections("track_shift_percentile", percentiles, name, Q0);
@@ -177,12 +193,26 @@ class WheelJudge : public RunJudge {
     }
     if (!most_unloaded) return;
     raise("wheel_unloading_unfiltered", std::max(0.0, raw.largest()), *most_unloaded);
-    raise("unloading_duration", raw.longest_above(), *most_unloaded);
+    if (raw.longest_above() > 0.0) {
+      const double begin = raw.longest_begin();
+      raise("unloading_duration", raw.longest_above(), {name, begin, wheel_position_at(w, begin)});
+    } else {
+      raise("unloading_duration", 0.0, {name});
+    }
     raise_sections("wheel_force_percentile", percentiles, name, Q0);
+  }
+
+  /// Between records [m].
+  [[nodiscard]] double wheel_position_at(std::size_t w, double time) const {
+    std::size_t k = 1;
+    while (k + 1 < records_ && at(k).time < time) ++k;
+    const double share = (time - at(k - 1).time) / (at(k).time - at(k - 1).time);
+    return std::lerp(wheel_position(w, k - 1), wheel_position(w, k), share);
   }
 
   void guided_wheel(std::size_t w, const Series& Q, const Series& Y) {
     const double Q0 = header_.static_wheel_load[w];
+    const FlangeLimits* flange = &flange_of(w);
     TrackMean quotient(averaged), quotient_5ft(five_feet);
     SectionPercentiles quotients = sections(), forces = sections();
     const std::string name = report::wheel_name(w);
@@ -192,16 +222,18 @@ class WheelJudge : public RunJudge {
       const Spot spot{name, at(k).time, x};
       forces.add(x, Y[k]);
       if (!(Q[k] > least_share * Q0)) continue;
-      raise("derailment", Y[k] / Q[k], spot);
+      raise("derailment", Y[k] / Q[k], spot, 0.0, flange);
       if (const auto mean = quotient.add(x, Y[k] / Q[k])) {
-        raise("derailment_2m", *mean, spot);
+        raise("derailment_2m", *mean, spot, 0.0, flange);
         quotients.add(x - averaged, *mean);
       }
-      if (const auto mean = quotient_5ft.add(x, Y[k] / Q[k])) raise("derailment_5ft", *mean, spot);
+      if (const auto mean = quotient_5ft.add(x, Y[k] / Q[k])) raise("derailment_5ft", *mean, spot, 0.0, flange);
     }
     raise_sections("guiding_force_percentile", forces, name, Q0);
-    raise_sections("derailment_percentile", quotients, name);
+    raise_sections("derailment_percentile", quotients, name, 0.0, flange);
   }
+
+  FlangeLimits flange_, other_flange_{{}, "the results hold the profile of other wheels alone"};
 };
 
 }  // namespace

@@ -79,7 +79,7 @@ CommandLine::CommandLine(std::string usage, const po::options_description& own,
   shared.add_options()("help,h", "print this help")                                                                  //
       ("version", "print the version")                                                                               //
       ("threads", text_value("0")->value_name("N"), "threads of commands that share their work, 0: all processors")  //
-      ("quiet,q", "no progress bar and no text, errors apart")                                                       //
+      ("quiet,q", "no progress bar, notes, warnings and summaries")                                                  //
       ("json", "print one JSON object on stdout")                                                                    //
       ("json-usage", "print this help as JSON");
   all_.add(own).add(shared);
@@ -96,6 +96,12 @@ CommandLine::CommandLine(std::string usage, const po::options_description& own,
   }
   constexpr int most_threads = 4096;
   if (const auto threads = static_cast<int>(whole_number("threads", 0, most_threads)); threads > 0) threads_ = threads;
+}
+
+void CommandLine::warn(std::string_view warning) const {
+  if (quiet()) return;
+  const std::string command = usage_.substr(0, usage_.find(' ', usage_.find(' ') + 1));
+  print_message(fmt::format("{}: warning: {}\n", command, warning));
 }
 
 bool CommandLine::help_printed() const {

@@ -61,6 +61,8 @@ class CommandLine {
   [[nodiscard]] int workers() const;
   [[nodiscard]] bool json() const { return given("json"); }
   [[nodiscard]] bool quiet() const { return given("quiet"); }
+  /// "vsi report: warning: …" on standard error, unless quiet.
+  void warn(std::string_view warning) const;
 
  private:
   /// @throws InputError where the option is missing

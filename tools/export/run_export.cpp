@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <random>
 
@@ -26,7 +29,9 @@ bool begins_with(const fs::path& file, std::string_view mark) {
   return in.read(head.data(), static_cast<std::streamsize>(head.size())) && head == mark;
 }
 
-/// An earlier export holds nothing but its own files.
+constexpr std::string_view lock_name = "lock";
+
+/// An earlier export holds nothing but its own files, and its lock where its process was ended.
 void require_own_folder(const fs::path& folder) {
   std::error_code failed;
   if (!fs::exists(fs::symlink_status(folder, failed))) return;
@@ -36,6 +41,7 @@ void require_own_folder(const fs::path& folder) {
                       "a new name, or the folder of an earlier export");
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename() == lock_name && entry.is_regular_file() && entry.file_size() == 0) continue;
     const bool collection = entry.path().extension() == collection_ending;
     if (entry.is_regular_file() && begins_with(entry.path(), collection ? pvd_mark() : vtu_mark())) continue;
     throw input_error(folder.string(), fmt::format("{} in it, which no export wrote", entry.path().filename().string()),
@@ -50,7 +56,23 @@ void write_whole(const fs::path& file, std::string_view text) {
   if (!out) throw ComputationError(fmt::format("{}: could not be written, the disk may be full", file.string()));
 }
 
-constexpr std::string_view lock_name = "lock";
+/// Exchanges what two names stand for, or gives the first folder the second name where nothing has it.
+std::error_code exchange(const fs::path& folder, const fs::path& other) {
+  std::error_code failed;
+  if (!fs::exists(other)) {
+    fs::rename(folder, other, failed);
+    return failed;
+  }
+  if (::renameat2(AT_FDCWD, folder.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0) return {};
+  // a file system that cannot do so at once
+  const fs::path between = folder.string() + "-old";
+  fs::rename(other, between, failed);
+  if (failed) return failed;
+  fs::rename(folder, other, failed);
+  std::error_code also;
+  fs::rename(between, failed ? other : folder, also);
+  return failed ? failed : also;
+}
 
 /// Folders that a process left behind which was ended from outside: nobody holds their lock any more.
 void remove_abandoned_folders(const fs::path& final_name) {
@@ -66,7 +88,7 @@ void remove_abandoned_folders(const fs::path& final_name) {
   }
 }
 
-/// A folder that is gone with this object, unless it got its name.
+/// A folder that is gone with this object; once it has its name, the one that had it before.
 class NewFolder {
  public:
   explicit NewFolder(const fs::path& final_name) : final_(final_name) {
@@ -92,14 +114,12 @@ class NewFolder {
   /// Takes the place of an earlier export.
   void publish() {
     require_own_folder(final_);
-    fs::remove(name_ / lock_name);
-    const fs::path old = name_.string() + "-old";
-    std::error_code failed;
-    const bool replaces = fs::exists(final_);
-    if (replaces) fs::rename(final_, old, failed);
-    if (!failed) fs::rename(name_, final_, failed);
-    if (failed) throw input_error(final_.string(), failed.message(), "a folder that can be replaced");
-    if (replaces) fs::remove_all(old, failed);
+    if (const std::error_code failed = exchange(name_, final_)) {
+      throw input_error(final_.string(), failed.message(), "a folder that can be replaced");
+    }
+    std::error_code nothing_to_lock;  // of a new name
+    fs::rename(final_ / lock_name, name_ / lock_name, nothing_to_lock);
+    fs::remove(final_ / lock_name);
   }
 
  private:

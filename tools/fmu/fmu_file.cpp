@@ -41,7 +41,9 @@ class Archive {
   void finish() { check(zipClose(zip_.release(), nullptr)); }
 
  private:
-  [[noreturn]] void fail() const { throw ComputationError(fmt::format("{}: could not be written", name_.string())); }
+  [[noreturn]] void fail() const {
+    throw ComputationError(fmt::format("{}: could not be written, the disk may be full", name_.string()));
+  }
   void check(int status) const {
     if (status != ZIP_OK) fail();
   }

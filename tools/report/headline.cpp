@@ -20,6 +20,9 @@ void raise(Extreme& extreme, double value, double time, const std::string& where
 /// Behind the first wheelset; 0 where an older file does not say.
 double offset(const std::vector<double>& offsets, std::size_t i) { return i < offsets.size() ? offsets[i] : 0.0; }
 
+/// Rigid wheels have none, nor a profile.
+bool has_lateral_forces(const ResultHeader& header) { return !header.wheel_y.empty(); }
+
 /// Of all nodes and steps, where the run has followed them.
 void add_deck_extremes(const ResultHeader& header, const RunSummary& summary, Headline& headline) {
   if (summary.deck.empty()) return;
@@ -57,7 +60,9 @@ std::string uncovered_queries(const RunSummary& summary) {
 
 std::string extent_of_extremes(const ResultHeader& header, const RunSummary& summary) {
   std::string text = "the recorded steps";
-  if (summary.wheel_extremes.largest_Q.found()) text += "; Q, Y/Q and unloading of all steps";
+  if (summary.wheel_extremes.largest_Q.found()) {
+    text += has_lateral_forces(header) ? "; Q, Y/Q and unloading of all steps" : "; Q and unloading of all steps";
+  }
   if (header.judged.empty()) return text;
   text += "; wheels and car bodies";
   if (header.judged[0] > -off_the_line) text += fmt::format(" from x = {:g} m", header.judged[0]);
@@ -87,6 +92,7 @@ HeadlineCollector::HeadlineCollector(const ResultHeader& header) : header_(heade
 }
 
 void HeadlineCollector::add_sliding_means(const StepRecord& step) {
+  if (!has_lateral_forces(header_)) return;
   for (std::size_t i = 0; i < step.wheels.size(); ++i) {
     const WheelRecord& wheel = step.wheels[i];
     if (!is_judged(header_.judged, step.position + offset(header_.wheel_x, i))) continue;
@@ -137,11 +143,12 @@ Headline HeadlineCollector::result(const RunSummary& summary) const {
   };
   result.largest_Q = of_wheels(&WheelExtremes::largest_Q);
   result.smallest_Q = of_wheels(&WheelExtremes::smallest_Q);
-  result.derailment = of_wheels(&WheelExtremes::derailment);
+  if (has_lateral_forces(header_)) result.derailment = of_wheels(&WheelExtremes::derailment);
   result.unloading = of_wheels(&WheelExtremes::unloading);
   result.extent = extent_of_extremes(header_, summary);
   add_deck_extremes(header_, summary, result);
   result.distance = last_position_ - first_position_;
+  if (result.car_body_lateral.value == 0.0) result.car_body_lateral = {};  // none moves laterally
   if (sparse_) result.derailment_2m = result.track_shift_2m = {};
   if (summary.contact_queries > 0) {
     result.table_share = static_cast<double>(summary.table_queries) / static_cast<double>(summary.contact_queries);

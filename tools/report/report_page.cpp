@@ -130,10 +130,12 @@ std::string heading(const RunResults& results, const Headline& headline) {
   const ResultHeader& header = results.header;
   const std::string wheelsets =
       header.wheel_x.empty() ? "" : fmt::format("{} wheelsets, ", header.wheel_x.size() / 2);  // else not recorded
-  std::string html =
-      fmt::format("<h1>{}</h1><p class=\"lead\">{} km/h, {}{} m of track in {} s; wheel {} on rail {}</p>",
-                  escaped(header.scene_name), shown(3.6 * header.speed), wheelsets, shown(headline.distance),
-                  shown(headline.simulated_time), escaped(header.wheel_profile), escaped(header.rail_profile));
+  const std::string profiles = header.wheel_profile.empty()
+                                   ? ""  // rigid wheels
+                                   : fmt::format("; wheel {} on rail {}", header.wheel_profile, header.rail_profile);
+  std::string html = fmt::format("<h1>{}</h1><p class=\"lead\">{} km/h, {}{} m of track in {} s{}</p>",
+                                 escaped(header.scene_name), shown(3.6 * header.speed), wheelsets,
+                                 shown(headline.distance), shown(headline.simulated_time), escaped(profiles));
   if (!results.summary.complete) {
     html += fmt::format("<p class=\"warning\"><b>The run is not complete.</b> {}</p>",
                         escaped(results.summary.message.empty() ? "It was stopped; this page shows what was written."

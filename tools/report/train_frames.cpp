@@ -135,7 +135,7 @@ std::string train_section(const RunResults& results) {
       (results.steps.back().time - results.steps.front().time) / static_cast<double>(writer.count() - 1);
   return fmt::format(
       "<section class=\"theatre\" id=\"theatre\"><h2>Train and wheels over time</h2><p class=\"lead\">{} instants, "
-      "every {:.4g} s. The deck passes through its recorded nodes and rests on its supports; displacements are "
+      "some {:.2g} s apart. The deck passes through its recorded nodes and rests on its supports; displacements are "
       "enlarged, and the bars under the wheelsets are their vertical forces. Below, the chosen wheelset seen in the "
       "direction of travel; the mark on a patch is as wide as its share of the force.</p>"
       "<script type=\"application/json\" id=\"frames\">{}</script></section>\n",

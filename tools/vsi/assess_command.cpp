@@ -192,6 +192,23 @@ std::vector<AssessTrain> trains_of(const SceneParameters& scene, const Request& 
   return assess_trains(scene, train_names_of(scene, request), folder);
 }
 
+/// HSLM-A is not the load model of short simply supported spans [EN1991-2, 6.4.6.1.1]: with it alone they do not pass.
+void note_short_spans(StageReport& report, Assessment& assessment) {
+  constexpr double shortest = 7.0;  // [m]
+  for (const assess::DeckAssessment& deck : assessment.decks) {
+    const bool by_hslm_a =
+        std::ranges::any_of(deck.trains, [](const AxleTrain& train) { return train.name.starts_with("hslm-a"); });
+    if (!by_hslm_a || !(deck.span > 0.0 && deck.span < shortest)) continue;
+    const std::string instead = fmt::format(
+        "EN 1991-2, 6.4.6.1.1 requires HSLM-B in place of HSLM-A for simply supported spans below {:g} m, as {} of "
+        "{:g} m; railtab has HSLM-A only",
+        shortest, deck.deck.name, deck.span);
+    report.notes.push_back(instead +
+                           "; name the trains of HSLM-B as files of axle loads (assessment.trains, --train).");
+    assessment.missing.push_back({"deck_acceleration", AssessmentStage::moving_load, instead, true});
+  }
+}
+
 void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std::string>& names, const Request& request,
                   StageReport& report, Assessment& assessment) {
   std::vector<AxleTrain> axles;
@@ -211,10 +228,12 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
     if (!has_free_end(deck.deck)) continue;
     report.notes.push_back(fmt::format(
         "An end of deck {} is free to move: an axle load that comes on accelerates it at once, while rails, "
-        "sleepers and ballast would spread the load. Where that can be over a tenth of the largest acceleration, it is "
-        "overestimated and fails no limit; runs with contact have the track.",
+        "sleepers and ballast would spread the load. A largest acceleration counts as overestimated, and "
+        "fails no limit, where one such load gives more than a tenth of it at its place. Resonance that many such "
+        "loads excite is not recognised and can fail a limit; runs with contact have the track.",
         deck.deck.name));
   }
+  note_short_spans(report, assessment);
 }
 
 /// Speeds of a train's runs: those asked for, or the line's and the critical one below it.

@@ -13,6 +13,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/line/irregularity.hpp"
 #include "railtab/runtime/line/irregularity_spectrum.hpp"
+#include "railtab/runtime/line/rail_friction.hpp"
 #include "railtab/runtime/measures/low_pass.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/scene/judged_stretch.hpp"
@@ -118,14 +119,18 @@ assess::RunWindow judged_window(const SceneParameters& scene) {
   if (scene.assessment.end) window.end = *scene.assessment.end;
   window.section_length = scene.assessment.section_length;
   window.section_step = scene.assessment.section_step;
-  window.friction = scene.contact.friction;
+  const std::filesystem::path& file = scene.contact.friction_file;
+  window.friction = file.empty() ? scene.contact.friction : read_rail_friction(file).largest();
   return window;
 }
 
 bool follow_deck(SceneParameters& scene, double cut_off) {
-  scene.output.deck_envelope = has_deck_nodes(scene) && samples_fast_enough(cut_off, scene.integration.time_step);
-  if (scene.output.deck_envelope) scene.output.deck_cut_off = cut_off;
-  return scene.output.deck_envelope;
+  constexpr double least_samples = 5.0;  // in a period of the cut-off
+  const double step = scene.integration.time_step;
+  const bool fast = samples_fast_enough(cut_off, step);
+  scene.output.deck_envelope = has_deck_nodes(scene);
+  if (scene.output.deck_envelope) scene.output.deck_cut_off = fast ? cut_off : 1.0 / (least_samples * step);
+  return scene.output.deck_envelope && fast;
 }
 
 namespace {
@@ -133,14 +138,17 @@ namespace {
 /// All nodes of the deck at every step, where that is possible.
 void follow_deck_of(ContactPlan& plan) {
   SceneParameters& scene = plan.scene;
-  plan.notes.push_back(
-      follow_deck(scene, plan.window.deck_cut_off)
-          ? fmt::format("Decks are judged at all their nodes and every step (output.deck_envelope), accelerations "
-                        "low-passed at {:.1f} Hz.",
-                        plan.window.deck_cut_off)
-          : fmt::format("Deck acceleration is that of the recorded nodes ({}), low-passed at {:.1f} Hz.",
-                        scene.structure.files.nodes.empty() ? "midspan" : "structure.report",
-                        plan.window.deck_cut_off));
+  const double cut_off = plan.window.deck_cut_off;
+  const bool filtered = follow_deck(scene, cut_off);
+  const std::string followed = scene.output.deck_envelope
+                                   ? "Decks are judged at all their nodes and every step (output.deck_envelope)"
+                                   : "Decks are judged at their recorded nodes (structure.report)";
+  const double apart = scene.integration.time_step * (scene.output.deck_envelope ? 1 : scene.output.every);
+  plan.notes.push_back(filtered || samples_fast_enough(cut_off, apart)
+                           ? fmt::format("{}, accelerations low-passed at {:.1f} Hz.", followed, cut_off)
+                           : fmt::format("{}, but not by their accelerations: the low-pass at {:.1f} Hz takes values "
+                                         "at most {:.3g} s apart, and these are {:g} s apart (integration.time_step).",
+                                         followed, cut_off, longest_low_pass_step(cut_off), apart));
 }
 
 /// Runs that lack a measure, by its name and the reason.
@@ -249,7 +257,14 @@ ContactPlan contact_plan(const AssessTrain& train, const std::vector<assess::Dec
                                        : "that way as one section",
       plan.window.section_step));
   if (!made.contact.friction_file.empty()) {
-    plan.notes.emplace_back("Nadal's limit takes contact.friction, not the coefficients of contact.friction_file.");
+    plan.notes.push_back(
+        fmt::format("The limits of Nadal and Weinstock take the largest coefficient of contact.friction_file, {:g}.",
+                    plan.window.friction));
+  }
+  if (made.train.lateral_acceleration != 0.0 || made.train.cant != 0.0) {
+    plan.notes.emplace_back(
+        "Lateral accelerations of car bodies are those against the curved and canted track; the acceleration of the "
+        "curve itself that cant leaves (train.lateral_acceleration, train.cant) is not in them.");
   }
   follow_deck_of(plan);
   plan.scene.text += "\n# vsi assess:";

@@ -14,12 +14,14 @@ namespace railtab::vsi {
 /// Has the measures of a run recorded, a millisecond apart at most.
 void record_what_is_judged(SceneParameters& scene);
 
-/// Has all nodes of the decks followed at every step, accelerations low-passed at `cut_off` [Hz]; without a bridge
-/// whose nodes are known, or with steps that are too long for the filter, only the recorded nodes are judged.
-/// @return whether they are followed
+/// Has all nodes of the decks followed at every step, accelerations low-passed at `cut_off` [Hz], or at a lower
+/// frequency where steps are too long for it; without a bridge whose nodes are known only the recorded nodes are
+/// judged.
+/// @return whether they are followed, and low-passed at `cut_off`
 bool follow_deck(SceneParameters& scene, double cut_off);
 
-/// Where wheels and car bodies of a scene begin to be judged, and the friction of Nadal's limit.
+/// Where wheels and car bodies of a scene begin to be judged, and the friction of Nadal's limit: of friction along the
+/// track the largest. @throws InputError as read_rail_friction()
 [[nodiscard]] assess::RunWindow judged_window(const SceneParameters& scene);
 
 /// Runs with contact of one train of an assessment.

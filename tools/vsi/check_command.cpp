@@ -9,7 +9,6 @@
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/results/output_selection.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
@@ -87,9 +86,7 @@ int check_command(const Arguments& arguments) {
       require_fitting_name(output, "-o", "a picture in SVG", {".svg"});
       write_text_file(output, picture, "<svg ");
     }
-    for (const std::string& warning : checked.warnings) {
-      print_message(fmt::format("vsi check: warning: {}\n", warning));
-    }
+    for (const std::string& warning : checked.warnings) line.warn(warning);
     if (line.json()) {
       print_as_json(scene, checked);
     } else if (!line.quiet()) {

@@ -124,7 +124,7 @@ int contact_command(const Arguments& arguments) {
   require_no_input(output, {query, table});
   const ContactTable contact = read_contact_table(table);
   if (const std::string unused = unused_loaded_part(contact.geometry); !unused.empty()) {
-    print_message(fmt::format("vsi contact: warning: {}: {}\n", table, unused));
+    line.warn(fmt::format("{}: {}", table, unused));
   }
   const bool by_load = has_loads(query), total = line.given("total");
   const Queries queries{contact.patches,

@@ -17,7 +17,6 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/printable_text.hpp"
 #include "railtab/runtime/base/text_file.hpp"
-#include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/report/html_page.hpp"
 #include "railtab/runtime/results/result_file.hpp"
 #include "railtab/runtime/vehicle/toml_kind.hpp"
@@ -60,7 +59,8 @@ Description of_array_file(const std::string& file) {
     return {"a contact geometry table",
             {},
             {fmt::format("tablegen info {}", file), fmt::format("tablegen conicity {}", file),
-             fmt::format("tablegen verify {}", file), fmt::format("vsi contact {} --query Q.csv -o R.csv", file),
+             fmt::format("tablegen verify {}", file), fmt::format("tablegen loaded {}", file),
+             fmt::format("vsi contact {} --query Q.csv -o R.csv", file),
              fmt::format("a scene's contact.table = \"{}\"", file)}};
   }
   if (type == creep_table_filetype) {
@@ -81,14 +81,15 @@ Description of_array_file(const std::string& file) {
 }
 
 Description of_toml(const std::string& file) {
-  const toml::table table = parse_toml(read_toml_text(file, "a TOML file"), file);
+  const toml::table table = read_toml(file, "a TOML file");
   const TomlKind kind = toml_kind(table);
   Description d{std::string(kind_name(kind)), {}, {}};
   if (const auto name = table["name"].value<std::string>()) d.facts.push_back(printable(*name));
   switch (kind) {
     case TomlKind::scene:
       d.commands = {fmt::format("vsi check {}", file), fmt::format("vsi run {} --plan", file),
-                    fmt::format("vsi run {}", file), fmt::format("vsi sweep {} --speed LO:HI:STEP -o DIR", file)};
+                    fmt::format("vsi run {}", file), fmt::format("vsi sweep {} --speed LO:HI:STEP -o DIR", file),
+                    fmt::format("vsi critical-speed {}", file)};
       if (table.contains("bridge") || table.contains("structure")) {
         d.commands.push_back(fmt::format("vsi assess {}", file));
         d.commands.push_back(fmt::format("vsi structure {}", file));
@@ -179,6 +180,8 @@ Description of_text(const std::string& file, std::string_view text, const std::s
     return {fmt::format("a page of railtab: {}", printable(kind)), {}, {"open it in a browser"}};
   }
   if (first.starts_with("<svg ")) return {"a picture (SVG)", {}, {"open it in a browser"}};
+  if (ending == ".pvd") return {"instants of a run for ParaView", {}, {fmt::format("paraview {}", file)}};
+  if (ending == ".json" && content.starts_with('{')) return {"values of a command (JSON)", {}, {}};
   if (is_point(content)) {
     return {"points of two columns, as of a profile",
             {"begins with: " + printable(content)},

@@ -57,9 +57,7 @@ int fmu_command(const Arguments& arguments) {
   for (const std::filesystem::path& read : scene.files) require_no_input(output, {read});
   try {
     const fmi::DrivenTrack track = fmu::driven_track(scene);
-    for (const std::string& warning : track.structure.warnings) {
-      print_message(fmt::format("vsi fmu: warning: {}\n", warning));
-    }
+    for (const std::string& warning : track.structure.warnings) line.warn(warning);
     fmu::write_fmu(output, track, scene.text);
     if (line.json()) {
       print_as_json(output, track);

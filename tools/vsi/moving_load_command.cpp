@@ -101,12 +101,10 @@ ModalDeck deck_of_options(const CommandLine& line, const DynamicModes& modes) {
 
 /// Of simply supported spans: their mass or stiffness may be in another unit.
 void warn_of_frequencies(const CommandLine& line, const std::vector<ModalDeck>& spans, std::string_view keys) {
-  if (line.quiet()) return;
   for (const ModalDeck& span : spans) {
     const std::string unlike = frequency_unlike_a_bridge(span.length(), span.frequency(0));
     if (unlike.empty()) continue;
-    print_message(fmt::format("vsi moving-load: warning: {}: are {} meant so?\n", unlike, keys));
-    return;
+    return line.warn(fmt::format("{}: are {} meant so?", unlike, keys));
   }
 }
 

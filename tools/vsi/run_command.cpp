@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <csignal>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -17,6 +17,7 @@
 #include "commands.hpp"
 #include "headline.hpp"
 #include "headline_text.hpp"
+#include "interrupt.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/process_end.hpp"
 #include "railtab/runtime/base/process_memory.hpp"
@@ -45,11 +46,8 @@ ContactMode contact_mode(const std::string& name) {
   throw input_error("--contact", name, "table, online or paper");
 }
 
-void print_warning(std::string_view warning) { print_message(fmt::format("vsi run: warning: {}\n", warning)); }
-
 void warn(const RunOptions& options, std::string_view warning) {
-  if (options.warning) return options.warning(warning);
-  if (!options.quiet) print_warning(warning);
+  if (!options.quiet) print_message(fmt::format("vsi run: warning: {}\n", warning));
 }
 
 /// Adds to a plan's warnings what this machine has too little of.
@@ -86,7 +84,7 @@ int print_plan(const SceneParameters& scene, const RunOptions& options) {
                      {"warnings", plan.warnings}});
     return 0;
   }
-  for (const std::string& warning : plan.warnings) print_warning(warning);
+  for (const std::string& warning : plan.warnings) warn(options, warning);
   if (options.quiet) return 0;
   const std::string before = plan.pre_roll_steps > 0 ? fmt::format(", after {} of pre-roll", plan.pre_roll_steps) : "";
   print_formatted("{}: {} steps of {} s, {:.4g} s in all{}\n", scene.name, plan.steps, plan.time_step, plan.duration,
@@ -112,27 +110,12 @@ std::string negative_force(const report::Headline& headline, const SceneParamete
       1e-3 * least.value, least.where, least.time);
 }
 
-/// Ctrl-C while steps are made: a first one asks the run to end after its step, a second one ends the program.
-class Interrupt {
- public:
-  static void listen() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { asked_ = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, nullptr);
-  }
-  [[nodiscard]] static bool asked() { return asked_ != 0; }
-
- private:
-  static inline volatile std::sig_atomic_t asked_ = 0;
-};
-
 /// What a run says that could not begin, and its exit code. Results of another run that are in its place stay there.
 /// @param warnings those that it has given
 int conclude_without_results(const RunSummary& summary, const RunOptions& options,
                              const std::vector<std::string>& warnings) {
   if (options.ended) {
-    options.ended({}, summary);
+    options.ended({}, summary, warnings);
     return failed;
   }
   if (options.json) {
@@ -153,7 +136,7 @@ int conclude(const SceneParameters& scene, const report::Headline& headline, con
   std::erase(last, "");
   warnings.insert(warnings.end(), last.begin(), last.end());
   if (options.ended) {
-    options.ended(headline, summary);
+    options.ended(headline, summary, warnings);
   } else if (options.json) {
     nlohmann::ordered_json json = report::headline_json(headline, summary);
     json["results"] = options.output;
@@ -200,6 +183,7 @@ class RunDisplay {
   /// The run goes on from records that its file holds.
   void take_up(const RunResults& before, std::span<const StepRecord> records) {
     collector_.emplace(before.header);
+    warnings_ = before.header.warnings;  // those of the start are not given again
     for (const StepRecord& record : records) collector_->add(record);
   }
 
@@ -211,7 +195,7 @@ class RunDisplay {
       if (!options_.quiet) print_message(fmt::format("vsi run: note: {}\n", note));
     };
     observer.warning = [this](std::string_view warning) {
-      warnings_.emplace_back(warning);
+      if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end()) warnings_.emplace_back(warning);
       warn(options_, warning);
     };
     observer.ready = [this, resumed] {

@@ -2,7 +2,7 @@
 
 #include <functional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "headline.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -13,9 +13,8 @@ namespace railtab::vsi {
 struct RunOptions {
   std::string output;
   bool json = false, quiet = false, resume = false;
-  /// Of a run among many: told its end and its warnings, in place of the program's own words; may be empty.
-  std::function<void(const report::Headline&, const RunSummary&)> ended{};
-  std::function<void(std::string_view)> warning{};
+  /// Of a run among many: told its end and all its warnings, in place of the program's own words; may be empty.
+  std::function<void(const report::Headline&, const RunSummary&, const std::vector<std::string>& warnings)> ended{};
   std::function<bool()> stop{};                  ///< whether to end after this step, besides Ctrl-C; may be empty
   std::function<void(double share)> progress{};  ///< of the steps done, 0..1; may be empty
   SharedSetUp* shared = nullptr;                 ///< as of run_scene()

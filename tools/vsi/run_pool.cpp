@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "command/print.hpp"
+#include "interrupt.hpp"
 #include "railtab/runtime/base/file_checksum.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/printable_text.hpp"
@@ -36,15 +37,6 @@ namespace {
 
 using exit_code::done, exit_code::failed, exit_code::wrong_input, exit_code::interrupted;
 constexpr int kept = 3;  // of a run that was finished before
-volatile std::sig_atomic_t asked = 0;
-
-/// A first Ctrl-C asks all runs to end after their step, a second one ends the program.
-void listen_to_interrupts() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { asked = 1; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-}
 
 bool is_readable(const fs::path& results) {
   try {
@@ -133,7 +125,7 @@ class ReportPipe {
 
 int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
   if (runs.empty()) return done;
-  listen_to_interrupts();
+  Interrupt::listen();
   runs_ = &runs;
   const SharedMemory memory(sizeof(Board)), shares(runs.size() * sizeof(double));
   Board& board = *new (memory.get()) Board;
@@ -154,7 +146,7 @@ int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
     for (auto end = reports.wait(longest); end; end = reports.wait(at_once)) ended(*end);
   };
   while (!workers_.empty()) {
-    if (asked != 0) board.stop = board.interrupted = true;
+    if (Interrupt::asked()) board.stop = board.interrupted = true;
     constexpr int moment = 100;  // ms
     hear(moment);
     for (pid_t process = 0; (process = ::waitpid(-1, nullptr, WNOHANG)) > 0;) {
@@ -175,7 +167,7 @@ int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
     }
   }
   if (!board.stop && std::find(told.begin(), told.end(), false) != told.end()) code = std::max(code, failed);
-  return asked != 0 ? interrupted : code;
+  return Interrupt::asked() ? interrupted : code;
 }
 
 bool RunPool::finished(const std::string& name) const {
@@ -325,9 +317,10 @@ int RunPool::make_row(Board& board, std::size_t number, const SceneParameters& s
   options.stop = [&] { return board.interrupted.load(); };
   options.shared = &shared;
   std::string warnings;
-  options.warning = [&](std::string_view warning) { warnings += printable(warning) + "\n"; };
-  options.ended = [&](const report::Headline& headline, const RunSummary& summary) {
+  options.ended = [&](const report::Headline& headline, const RunSummary& summary,
+                      const std::vector<std::string>& given) {
     if (summary.interrupted) return;
+    for (const std::string& warning : given) warnings += printable(warning) + "\n";
     end.emplace(headline, summary);
     if (!summary.complete) say_early_end(run.name, scene, headline, summary);
   };

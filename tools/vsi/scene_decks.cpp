@@ -11,7 +11,8 @@ namespace {
 
 bool alike(const BridgeParameters& a, const BridgeParameters& b) {
   return a.length == b.length && a.mass == b.mass && a.E * a.Iy == b.E * b.Iy && a.E * a.Iz == b.E * b.Iz &&
-         a.damping_ratio == b.damping_ratio;
+         a.damping_ratio == b.damping_ratio && a.track_offset == b.track_offset && a.G * a.J == b.G * b.J &&
+         a.rotary_inertia == b.rotary_inertia;
 }
 
 }  // namespace

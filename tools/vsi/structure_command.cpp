@@ -9,7 +9,7 @@
 #include "command/print.hpp"
 #include "commands.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/base/process_end.hpp"
+#include "railtab/runtime/fe/mode_files.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/structure/mode_output.hpp"
@@ -53,6 +53,18 @@ std::vector<std::string> warnings(const SceneParameters& scene, const StructureS
   const double length = s.high[0] - s.low[0];
   if (scene.structure.files.nodes.empty() || !std::isfinite(s.mass[2]) || !(length > 0.0)) return {};
   return plausibility_warnings(s.mass[2] / length, s.frequencies.empty() ? 0.0 : s.frequencies.front());
+}
+
+/// Modes of the summary that the files do not have, since their damping or that of a lower mode is above what files of
+/// modes hold; empty where they have all.
+std::string not_written(const StructureSummary& s, const ModalStructure& written) {
+  const std::size_t asked = s.frequencies.size();
+  const auto has = static_cast<std::size_t>(written.omega.size());
+  if (has >= asked) return {};
+  return fmt::format(
+      "the files have the first {} of {} modes, {} are left out: the damping ratio of mode {}, at {:.4g} Hz, is "
+      "{:.3g}, and structure.format = \"modes\" takes at most {}",
+      has, asked, asked - has, has + 1, s.frequencies[has], s.damping_ratios[has], most_damping_ratio);
 }
 
 /// No "-0.000" for what turning axes leaves of zero [m].
@@ -118,9 +130,12 @@ int structure_command(const Arguments& arguments) {
     }
   }();
   std::string section;
-  if (line.given("output")) section = write_modes(modes_of(scene, modes), line.text("output"));
-  for (const std::string& warning : warnings(scene, found.summary))
-    print_message(fmt::format("vsi structure: warning: {}\n", warning));
+  if (line.given("output")) {
+    const ModalStructure written = modes_of(scene, modes);
+    section = write_modes(written, line.text("output"));
+    if (const std::string note = not_written(found.summary, written); !note.empty()) line.warn(note);
+  }
+  for (const std::string& warning : warnings(scene, found.summary)) line.warn(warning);
   if (line.json()) {
     print_as_json(scene, found);
   } else {

@@ -72,15 +72,37 @@ void count_exceedance(const StudyPlan& plan, const StudyRuns& runs, const std::v
   }
 }
 
-void fit(const StudyPlan& plan, StudyResult& result) {
+/// Which sample a planned point has; without random variables, or with one sample of them, which point of the grid of
+/// the variables other than the intensity.
+std::size_t sample_of(const StudyPlan& plan, std::size_t point) {
+  if (plan.sampling.samples > 1) return point % plan.sampling.samples;
+  std::size_t faster = 1;  // points of the variables after the intensity
+  for (std::size_t j = plan.intensity + 1; j < plan.variables.size(); ++j) {
+    if (!plan.variables[j].random()) faster *= plan.variables[j].values.size();
+  }
+  const std::size_t intensities = plan.variables[plan.intensity].values.size();
+  return point / (faster * intensities) * faster + point % faster;
+}
+
+void fit(const StudyPlan& plan, const StudyRuns& runs, const std::vector<StudyRow>& rows, StudyResult& result) {
   std::sort(result.exceedance.begin(), result.exceedance.end(), [&](const auto& a, const auto& b) {
     return a.point[plan.intensity].number < b.point[plan.intensity].number;
   });
-  std::vector<FragilityLevel> levels;
-  for (const ExceedanceCount& group : result.exceedance) {
-    levels.push_back({group.point[plan.intensity].number, group.runs, group.exceeded});
+  std::vector<double> intensities;
+  for (const ExceedanceCount& group : result.exceedance) intensities.push_back(group.point[plan.intensity].number);
+  const std::vector<std::size_t> none(intensities.size(), 0);
+  std::vector<FragilitySample> samples;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const StudyPoint& point = result.points[i];
+    const std::size_t sample = sample_of(plan, i);
+    if (sample >= samples.size()) samples.resize(sample + 1, {none, none});
+    const auto at = std::lower_bound(intensities.begin(), intensities.end(), point[plan.intensity].number);
+    const auto level = static_cast<std::size_t>(at - intensities.begin());
+    ++samples[sample].runs[level];
+    samples[sample].exceeded[level] += response_of(plan, rows[i], runs.name_of(point)) >= plan.limit;
   }
-  result.fragility = fragility_with_bounds(levels, {plan.replicates, plan.confidence, plan.sampling.seed});
+  result.fragility =
+      fragility_with_bounds(intensities, samples, {plan.replicates, plan.confidence, plan.sampling.seed});
 }
 
 SubsetOptions subset_options(const StudyPlan& plan) {
@@ -208,8 +230,9 @@ StudyResult analyse(const StudyPlan& plan, StudyRuns& runs, const Progress& prog
     find_thresholds(plan, runs, progress, result);
   } else {
     result.points = planned_points(plan);
-    count_exceedance(plan, runs, runs.rows(result.points, progress), result);
-    if (plan.method == StudyMethod::fragility) fit(plan, result);
+    const std::vector<StudyRow> rows = runs.rows(result.points, progress);
+    count_exceedance(plan, runs, rows, result);
+    if (plan.method == StudyMethod::fragility) fit(plan, runs, rows, result);
   }
   return result;
 }

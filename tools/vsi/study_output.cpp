@@ -302,7 +302,9 @@ std::string exceedance_text(const StudyPlan& plan, const StudyResult& result) {
   }
   text += fmt::format("  lognormal curve: median {:.5g} {}, logarithmic deviation {:.4g}\n", f.curve->median, unit,
                       f.curve->deviation);
-  if (f.at_levels.empty()) return text + "  no bounds: too few replicates of the bootstrap have a curve\n";
+  if (f.at_levels.empty()) {
+    return text + "  no bounds: there is one sample alone, or too few replicates of the bootstrap have a curve\n";
+  }
   return text + fmt::format("  bounds: median {:.5g} to {:.5g} {}, deviation {:.4g} to {:.4g} ({} replicates)\n",
                             f.median.low, f.median.high, unit, f.deviation.low, f.deviation.high, f.replicates);
 }

@@ -12,6 +12,7 @@
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/toml_text.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
+#include "railtab/runtime/scene/toml_leaves.hpp"
 #include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 #include "sweep_plan.hpp"
@@ -29,6 +30,13 @@ std::string without_number(const std::string& key) {
   const std::string entry = key.substr(first + 1, second - first - 1);
   const bool number = !entry.empty() && entry.find_first_not_of("0123456789") == entry.npos;
   return number ? key.substr(0, first) + key.substr(second) : key;
+}
+
+/// "load.1.Fy" of "load.Fy", which is the key of the only [[load]].
+std::string with_number(const std::string& key) {
+  const std::size_t point = key.find('.');
+  if (point == key.npos || !scene::is_list_section(key.substr(0, point)) || without_number(key) != key) return key;
+  return key.substr(0, point) + ".1" + key.substr(point);
 }
 
 /// The row of the table of keys; null where there is none, which the scene's reader says better.
@@ -378,8 +386,10 @@ void read_variables(TomlSection& root, const toml::table& table, StudyPlan& plan
     if (!names.insert(v.name).second)
       throw sections[i].error("name", fmt::format("\"{}\" twice", v.name), "another name");
     for (const StudyKey& key : v.keys) {
-      const std::string one = key.key == "train.speed_kmh" ? "train.speed" : key.key;
-      if (!keys.insert(one).second) throw sections[i].error("key", fmt::format("{} twice", key.key), "each key once");
+      const std::string one = key.key == "train.speed_kmh" ? "train.speed" : with_number(key.key);
+      if (!keys.insert(one).second) {
+        throw sections[i].error("key", fmt::format("{} twice", with_number(key.key)), "each key once");
+      }
     }
     plan.variables.push_back(std::move(v));
   }

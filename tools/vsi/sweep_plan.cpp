@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <set>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/text_lines.hpp"
 #include "run_folder.hpp"
 
 namespace railtab::vsi {
@@ -16,10 +16,7 @@ constexpr double most_runs = 100000;
 
 double number(const std::string& option, const std::string& text, std::string_view part, std::string_view forms) {
   double value = 0.0;
-  const auto [stop, status] = std::from_chars(part.data(), part.data() + part.size(), value);
-  if (status != std::errc() || stop != part.data() + part.size() || !std::isfinite(value)) {
-    throw input_error(option, text, forms);
-  }
+  if (!parse(part, value)) throw input_error(option, text, forms);
   return value;
 }
 

@@ -337,9 +337,7 @@ int vehicle_command(const Arguments& arguments) {
   } else {
     print(vehicle);
   }
-  for (const std::string& warning : vehicle.warnings) {
-    print_message(fmt::format("vsi vehicle: warning: {}\n", warning));
-  }
+  for (const std::string& warning : vehicle.warnings) line.warn(warning);
   require_closing(vehicle.data);
   return 0;
 }

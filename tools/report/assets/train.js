@@ -137,8 +137,9 @@
   function draw_train() {
     const s = surface(train_canvas, 270), c = s.c, r = range(), scale = s.width / (r[1] - r[0]);
     const level = 150, X = function (x) { return (x - r[0]) * scale; };
-    const deck_factor = most_deck > 0 ? round_factor(34 / (most_deck * scale)) : 1;
-    const body_factor = most_body > 0 ? round_factor(Math.min(24 / (most_body * scale), deck_factor)) : 1;
+    const rounding = 1e-9;  // m, which nothing shows
+    const deck_factor = most_deck > rounding ? round_factor(34 / (most_deck * scale)) : 1;
+    const body_factor = most_body > rounding ? round_factor(Math.min(24 / (most_body * scale), deck_factor)) : 1;
     const lines = [];
     for (let k = 0; k < spans; ++k) {
       if (stored.spans[1][k] < r[0] || stored.spans[0][k] > r[1]) continue;
