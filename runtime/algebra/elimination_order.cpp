@@ -66,6 +66,24 @@ struct NodeGraph {
   }
 };
 
+/// A SIGTERM to this thread waits. METIS would leave by longjmp from wherever it comes, in the midst of an allocation
+/// too, and the heap would be damaged.
+class TerminationBlocked {
+ public:
+  TerminationBlocked() noexcept {
+    sigset_t terminate;
+    sigemptyset(&terminate);
+    sigaddset(&terminate, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &terminate, &before_);
+  }
+  TerminationBlocked(const TerminationBlocked&) = delete;
+  TerminationBlocked& operator=(const TerminationBlocked&) = delete;
+  ~TerminationBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_{};
+};
+
 std::vector<int> by_nested_dissection(const Sparse& matrix, const DofRange& range, std::span<const int> node) {
   NodeGraph graph(matrix, range, node);
   auto vertices = static_cast<idx_t>(graph.unknowns.size());
@@ -78,12 +96,12 @@ std::vector<int> by_nested_dissection(const Sparse& matrix, const DofRange& rang
     // sleepers on the element hang on. Through it everything is near everything, and nothing would cut.
     constexpr idx_t many = 20;
     options[METIS_OPTION_PFACTOR] = 10 * many;
-    // METIS has one sequence of random numbers, and takes SIGTERM and SIGABRT, for all threads.
+    // METIS has one sequence of random numbers for all threads.
     static std::mutex one_at_a_time;
     const std::scoped_lock lock(one_at_a_time);
+    const TerminationBlocked until_it_is_done;
     const int status = METIS_NodeND(&vertices, graph.begin.data(), graph.neighbour.data(), graph.size.data(),
                                     options.data(), order.data(), position.data());
-    if (status == METIS_ERROR) static_cast<void>(std::raise(SIGTERM));  // it came meanwhile: METIS has kept it
     if (status != METIS_OK) throw std::bad_alloc();  // the input is a symmetric graph: memory is all that can lack
   }
   std::vector<int> unknown;
