@@ -26,15 +26,16 @@ std::vector<double> kinks(const ModalDeck& deck) {
   return found;
 }
 
-/// Where pieces begin: at axles on kinks, those nearer to each other than rounding being one, and evenly between them.
+/// Where pieces begin: at axles on kinks, those that lengths in files leave side by side being one, and evenly between
+/// them. The cubic of a piece of length h has the rounding of its values over h³.
 std::vector<double> piece_starts(const ModalDeck& deck, const AxleTrain& train) {
   std::vector<double> events;
   for (const double kink : kinks(deck)) {
     for (const double behind : train.behind) events.push_back(behind + kink);
   }
   std::sort(events.begin(), events.end());
-  const double rounding = 1e-12 * (events.back() - events.front());
   const double longest = deck.length() / static_cast<double>(deck.shape.size());
+  const double rounding = std::max(1e-6 * longest, 1e-12 * (events.back() - events.front()));
   std::vector<double> starts{events.front()};
   for (const double event : events) {
     const double from = starts.back(), gap = event - from;

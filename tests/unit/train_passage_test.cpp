@@ -228,6 +228,22 @@ TEST(TrainPassage, PeaksAreThoseOfAnOwnSuperposition) {
 
 /// One force on an undamped span that has gone leaves mode 1 with the amplitude of the closed form
 /// 2P/(M(ω² − Ω²)) (Ω/ω) cos(ωL/2v); the largest acceleration with one mode is then known too.
+// Axles leave and come on at once but for the digits of a length in a file.
+TEST(TrainPassage, RoundedLengthsChangeNothing) {
+  BridgeParameters rounded = span();
+  rounded.length += 8e-10;
+  AxleTrain train;
+  train.behind = {0.0, 2.5, 25.0, 27.5};
+  train.load.assign(4, 170e3);
+  const auto peaks = [&](const BridgeParameters& p) {
+    const ModalDeck deck = simply_supported_deck(p);
+    return train_passage(deck, train, modal_force(deck, train), 60.0);
+  };
+  const PassagePeaks whole = peaks(span()), nearly = peaks(rounded);
+  EXPECT_NEAR(nearly.displacement.value, whole.displacement.value, 1e-6 * whole.displacement.value);
+  EXPECT_NEAR(nearly.acceleration.value, whole.acceleration.value, 1e-6 * whole.acceleration.value);
+}
+
 TEST(TrainPassage, AnUndampedSpanKeepsItsVibration) {
   BridgeParameters p = span();
   p.damping_ratio = 0.0;
