@@ -34,32 +34,31 @@ Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis,
   return motion;
 }
 
+/// A sum of rows in all modes, supports at rest.
+Eigen::RowVectorXd of_modes(const DofSum& sum, const ModalBasis& basis) {
+  Eigen::RowVectorXd motion = Eigen::RowVectorXd::Zero(basis.shape.cols());
+  for (const auto& [row, share] : sum) {
+    if (row >= 0) motion += share * basis.shape.row(row);
+  }
+  return motion;
+}
+
+/// The same of the vertical motion of the deck's nodes: nodes × modes.
+Eigen::MatrixXd of_nodes(const FeStructure& structure, const std::vector<int>& deck, const ModalBasis& basis) {
+  Eigen::MatrixXd motion(static_cast<Eigen::Index>(deck.size()), basis.shape.cols());
+  for (std::size_t k = 0; k < deck.size(); ++k) {
+    motion.row(static_cast<Eigen::Index>(k)) = of_modes(node_motion(structure.nodes.at(deck[k]), z_dof), basis);
+  }
+  return motion;
+}
+
 /// Vertical motion of the modes, mean over the width of the deck at places along it: places × modes. Twist about the
 /// middle has none, wherever the track lies.
 Eigen::MatrixXd mean_over_width(const FeStructure& structure, const std::vector<int>& deck, const ModalBasis& basis) {
-  const auto motion = [&](const DofSum& sum) {
-    Eigen::RowVectorXd of_modes = Eigen::RowVectorXd::Zero(basis.shape.cols());
-    for (const auto& [row, share] : sum) {
-      if (row >= 0) of_modes += share * basis.shape.row(row);  // supports are at rest
-    }
-    return of_modes;
-  };
-  if (!is_surface(structure, deck)) {
-    Eigen::MatrixXd result(static_cast<Eigen::Index>(deck.size()), basis.shape.cols());
-    for (std::size_t k = 0; k < deck.size(); ++k) {
-      result.row(static_cast<Eigen::Index>(k)) = motion(node_motion(structure.nodes.at(deck[k]), z_dof));
-    }
-    return result;
-  }
+  if (!is_surface(structure, deck)) return of_nodes(structure, deck, basis);
   constexpr int along = 49, across = 9;
-  double low = INFINITY, high = -INFINITY;
-  std::vector<Eigen::Vector2d> places;
-  for (const int number : deck) {
-    places.emplace_back(structure.nodes.at(number).position.head<2>());
-    low = std::min(low, places.back().y());
-    high = std::max(high, places.back().y());
-  }
-  const DeckOutline outline(std::move(places));
+  const DeckOutline outline = deck_outline(structure, deck);
+  const auto [low, high] = outline.sides();
   const SurfaceMotion surface = surface_motion(structure, deck);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(along, basis.shape.cols());
   for (int i = 0; i < along; ++i) {
@@ -69,7 +68,7 @@ Eigen::MatrixXd mean_over_width(const FeStructure& structure, const std::vector<
       const DeckExtent extent = outline.at(y);
       const auto at = surface(extent.begin + (extent.end - extent.begin) * (i + 0.5) / along, y);
       if (!at) continue;
-      result.row(i) += motion(*at);
+      result.row(i) += of_modes(*at, basis);
       ++found;
     }
     if (found > 0) result.row(i) /= found;
@@ -169,15 +168,8 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
   }
   set_line(line, basis, end - begin, deck);
   std::vector<double> x;
-  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(nodes.size()), deck.modes());
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const FeNode& node = structure.nodes.at(nodes[k]);
-    x.push_back(node.position[0] - begin);
-    for (const auto& [row, share] : node_motion(node, z_dof)) {
-      if (row >= 0) shapes.row(static_cast<Eigen::Index>(k)) += share * basis.shape.row(row);  // supports are at rest
-    }
-  }
-  set_points(static_cast<int>(deck.knots.size()) - 1, shapes, x, deck);
+  for (const int node : nodes) x.push_back(structure.nodes.at(node).position[0] - begin);
+  set_points(static_cast<int>(deck.knots.size()) - 1, of_nodes(structure, nodes, basis), x, deck);
   return deck;
 }
 

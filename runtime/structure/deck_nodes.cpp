@@ -50,10 +50,20 @@ DeckExtent DeckOutline::at(double y) const {
   return extent.end > extent.begin ? extent : whole_;
 }
 
-DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
+std::array<double, 2> DeckOutline::sides() const {
+  const auto [left, right] =
+      std::minmax_element(corner_.begin(), corner_.end(), [](const auto& a, const auto& b) { return a.y() < b.y(); });
+  return {left->y(), right->y()};
+}
+
+DeckOutline deck_outline(const FeStructure& structure, const std::vector<int>& deck) {
   std::vector<Eigen::Vector2d> nodes;
   for (const int number : deck) nodes.emplace_back(structure.nodes.at(number).position.head<2>());
-  return DeckOutline(std::move(nodes)).at(0.0);
+  return DeckOutline(std::move(nodes));
+}
+
+DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck) {
+  return deck_outline(structure, deck).at(0.0);
 }
 
 DeckExtent plausible_deck_extent(const FeStructure& structure, const std::vector<int>& deck) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -28,13 +29,17 @@ class DeckOutline {
   explicit DeckOutline(std::vector<Eigen::Vector2d> nodes);
   /// On the line at y; beside the outline from the first to the last node.
   [[nodiscard]] DeckExtent at(double y) const;
+  /// Smallest and largest y [m].
+  [[nodiscard]] std::array<double, 2> sides() const;
 
  private:
   std::vector<Eigen::Vector2d> corner_;  ///< of the outline, in turn
   DeckExtent whole_;
 };
 
-/// On the track's centre line. @param deck numbers of its nodes, at least one
+/// @param deck numbers of its nodes, at least one
+[[nodiscard]] DeckOutline deck_outline(const FeStructure& structure, const std::vector<int>& deck);
+/// On the track's centre line.
 [[nodiscard]] DeckExtent deck_extent(const FeStructure& structure, const std::vector<int>& deck);
 /// The same of the deck of a bridge under track. @throws InputError where no bridge is so long or so short, or the deck
 /// lies above the track or far below it: wrong units, axes or origins

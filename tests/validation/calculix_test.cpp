@@ -322,10 +322,7 @@ std::vector<double> shaken(const StructureModel& structure) {
   const StructureResponse response(structure, hht);
   LinearMotion motion(structure.dofs());
   Eigen::VectorXd load;
-  const int midspan = structure.nodes.front().dof[2];
-  const auto vertical = [&](const Eigen::VectorXd& u) {  // of expanded nodes the mean of their rows
-    return midspan != held ? u[midspan] : structure.summed_nodes.row(2).dot(u);
-  };
+  const auto vertical = [&](const Eigen::VectorXd& u) { return node_motion(structure, 0, 2, u); };
   std::vector<double> relative;
   for (int step = 0; step < 1000; ++step) {
     past_contact_load(hht, motion, {0, structure.dofs()}, load);
