@@ -45,7 +45,8 @@ void TrackSimulation::reset() {
     if (variable.causality == Causality::input) state_.input.push_back(variable.start);
   }
   state_.applied = state_.input;
-  state_.motion = LinearMotion(track_.structure.dofs());
+  state_.motion = StructureMotion(track_.structure.dofs());
+  response_.bring_in_order(state_.motion);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(6 * static_cast<Eigen::Index>(track_.wheelset_x.size()));
   state_.deflection = {none, none, none};
   loads_ = loads(state_.applied);
@@ -80,6 +81,7 @@ void TrackSimulation::rest() {
   state_.applied = state_.input;
   loads_ = loads(state_.applied);
   state_.motion = rest_under(track_.structure, loads_);
+  response_.bring_in_order(state_.motion);
   state_.deflection.force = state_.deflection.slope_force = forces(loads_);
   state_.deflection.rate.setZero();
   state_.speed = 0.0;
@@ -119,7 +121,7 @@ void TrackSimulation::step(double length) {
 
 double TrackSimulation::value(std::size_t variable) const {
   if (variable < inputs()) return state_.input[variable];
-  const LinearMotion& motion = state_.motion;
+  const LinearMotion& motion = std::as_const(state_.motion).whole();
   const std::size_t output = variable - inputs(), wheel = output / outputs_per_wheel;
   if (wheel < loads_.size()) {
     const RailContact& place = loads_[wheel].place;
@@ -151,12 +153,11 @@ void visit_numbers(State& state, Visitor&& visit) {
   visit(state.input.data(), state.input.size());
   visit(state.applied.data(), state.applied.size());
   visit(&state.speed, 1);
-  auto& m = state.motion;
+  const auto visit_vector = [&](auto& vector) { visit(vector.data(), static_cast<std::size_t>(vector.size())); };
+  for (auto* vector : state.motion.numbers()) visit_vector(*vector);
+  visit_vector(state.motion.loads().contact_load);
   auto& d = state.deflection;
-  for (auto* vector :
-       {&m.displacement, &m.velocity, &m.acceleration, &m.contact_load, &d.force, &d.rate, &d.slope_force}) {
-    visit(vector->data(), static_cast<std::size_t>(vector->size()));
-  }
+  for (auto* vector : {&d.force, &d.rate, &d.slope_force}) visit_vector(*vector);
 }
 
 }  // namespace

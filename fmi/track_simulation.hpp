@@ -16,7 +16,7 @@ struct TrackState {
   long steps = 0;               ///< of the scheme since then
   std::vector<double> input;    ///< as set, for the end of the next step
   std::vector<double> applied;  ///< at the present time
-  LinearMotion motion{};
+  StructureMotion motion{};
   ElementDeflection deflection{};  ///< of rails under the wheels
   double speed = 0.0;              ///< of the wheelsets over the last step, their mean [m/s]
 };

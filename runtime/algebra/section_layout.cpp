@@ -263,26 +263,16 @@ class Division {
 
   void append_single(std::size_t entry) {
     const int u = layout_.unknown[entry];
-    if (u >= 0) append_single(static_cast<int>(entry), u);
-  }
-
-  void append_single(int entry, int u) {
-    const int other = mirrored_[index(u - static_cast<int>(layout_.range.begin))];
-    if (other < 0) {
-      layout_.single.push_back({entry, u, entry});
-    } else {
-      (u < other ? layout_.single_first : layout_.single_second)
-          .push_back({entry, u, static_cast<int>(layout_.position(other))});
-    }
+    if (u >= 0) layout_.single.push_back({static_cast<int>(entry), u});
   }
 
   void append_interfaces() {
     const auto first = static_cast<int>(layout_.interface_begin());
     for (int k = 0; k < static_cast<int>(layout_.interfaces.size()); ++k) {
-      append_single(first + k, layout_.interfaces[index(k)].unknown);
-    }
-    for (const SectionLayout::Single& of : layout_.single_first) {
-      if (of.entry >= first) layout_.interface_pair.push_back({of.entry, of.paired});
+      const int u = layout_.interfaces[index(k)].unknown;
+      const int other = mirrored_[index(u - static_cast<int>(layout_.range.begin))];
+      layout_.single.push_back({first + k, u});
+      if (u < other) layout_.interface_pair.push_back({first + k, static_cast<int>(layout_.position(other))});
     }
   }
 
@@ -391,80 +381,48 @@ Sparse by_sums_and_differences(const Sparse& matrix, const MirrorPairs& pairs) {
   return result;
 }
 
-template <std::size_t vectors, std::size_t sums>
-void SectionLayout::into(const WeightedSums<vectors, sums>& natural,
-                         const std::array<Eigen::VectorXd*, sums>& ordered) const {
-  std::array<double*, sums> to;
-  for (std::size_t m = 0; m < sums; ++m) to[m] = ordered[m]->data();
-  const auto values = [&](int u) {
-    std::array<double, vectors> part;
-    for (std::size_t k = 0; k < vectors; ++k) part[k] = natural.vector[k][u];
-    std::array<double, sums> value{};
-    for (std::size_t m = 0; m < sums; ++m) {
-      for (std::size_t k = 0; k < vectors; ++k) value[m] += natural.weight[m][k] * part[k];
-    }
-    return value;
-  };
+void SectionLayout::into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const {
+  double* const to = ordered.data();
   for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
-    const std::size_t first = column_begin(c);
-    Pack of_section[sums][4] = {}, of_slot[4];
+    Pack of_section[4] = {}, of_slot[4];
     for (std::size_t s = 0; s < 4; ++s) {
-      Pack part[vectors] = {};
-      if (const int begin = consecutive[c + s]; begin >= 0) {
-        for (std::size_t k = 0; k < vectors; ++k) std::memcpy(&part[k], natural.vector[k] + begin, sizeof part[k]);
-      }
-      for (std::size_t m = 0; m < sums; ++m) {
-        for (std::size_t k = 0; k < vectors; ++k) of_section[m][s] += natural.weight[m][k] * part[k];
-      }
+      if (consecutive[c + s] < 0) continue;
+      std::memcpy(&of_section[s], natural.data() + consecutive[c + s], sizeof of_section[s]);
     }
-    for (std::size_t m = 0; m < sums; ++m) {
-      transpose(of_section[m][0], of_section[m][1], of_section[m][2], of_section[m][3], of_slot);
-      for (std::size_t row = 0; row < 4; ++row) {
-        std::memcpy(to[m] + first + sections * row, &of_slot[row], sizeof of_slot[row]);
-      }
+    transpose(of_section[0], of_section[1], of_section[2], of_section[3], of_slot);
+    for (std::size_t row = 0; row < 4; ++row) {
+      std::memcpy(to + column_begin(c) + sections * row, &of_slot[row], sizeof of_slot[row]);
     }
   }
-  for (std::size_t m = 0; m < sums; ++m) std::fill(to[m] + 4 * consecutive.size(), to[m] + unknown.size(), 0.0);
-  for (const std::vector<Single>* singles : {&single, &single_first, &single_second}) {
-    for (const Single& of : *singles) {
-      const std::array<double, sums> value = values(of.unknown);
-      for (std::size_t m = 0; m < sums; ++m) to[m][of.entry] = value[m];
-    }
+  std::fill(to + 4 * consecutive.size(), to + unknown.size(), 0.0);
+  for (const Single& of : single) to[of.entry] = natural[of.unknown];
+  Lanes* const slot = lanes(ordered);
+  for (std::size_t first = 0; first < partner.size(); ++first) {
+    const auto& [second, is_second] = partner[first];
+    if (second < 0 || is_second) continue;
+    const Lanes u = slot[first], v = slot[second];
+    slot[first] = root_half * (u + v);
+    slot[second] = root_half * (u - v);
   }
-  for (std::size_t m = 0; m < sums; ++m) {
-    Lanes* const slot = lanes(*ordered[m]);
-    for (std::size_t first = 0; first < partner.size(); ++first) {
-      const auto& [second, is_second] = partner[first];
-      if (second < 0 || is_second) continue;
-      const Lanes u = slot[first], v = slot[second];
-      slot[first] = root_half * (u + v);
-      slot[second] = root_half * (u - v);
-    }
-    for (const auto& [first, second] : interface_pair) {
-      const double u = to[m][first], v = to[m][second];
-      to[m][first] = root_half * (u + v);
-      to[m][second] = root_half * (u - v);
-    }
+  for (const auto& [first, second] : interface_pair) {
+    const double u = to[first], v = to[second];
+    to[first] = root_half * (u + v);
+    to[second] = root_half * (u - v);
   }
 }
-template void SectionLayout::into(const WeightedSums<1, 1>&, const std::array<Eigen::VectorXd*, 1>&) const;
-template void SectionLayout::into(const WeightedSums<3, 2>&, const std::array<Eigen::VectorXd*, 2>&) const;
 
-namespace {
-
-// Calls four(u, pack) for four unknowns that follow each other, one(u, number) for the others.
-template <class Four, class One>
-void visit_natural(const SectionLayout& l, const Eigen::VectorXd& ordered, Four&& four, One&& one) {
+void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
+  double* const to = natural.data();
   const Lanes* const slot = lanes(ordered);
   // what stands in a slot, in the place of the sum or the difference
   const auto own = [&](std::size_t k) {
-    const auto& [other, is_second] = l.partner[k];
+    const auto& [other, is_second] = partner[k];
     if (other < 0) return slot[k];
     return is_second ? root_half * (slot[other] - slot[k]) : root_half * (slot[k] + slot[other]);
   };
   Lanes slots_of_column[4];
-  for (std::size_t c = 0; c < l.consecutive.size(); c += 4) {  // four slots of four sections
-    const std::size_t first = SectionLayout::column_begin(c), section = first % sections;
+  for (std::size_t c = 0; c < consecutive.size(); c += 4) {  // four slots of four sections
+    const std::size_t first = column_begin(c), section = first % sections;
     if (section == 0) {
       for (std::size_t k = 0; k < 4; ++k) slots_of_column[k] = own(first / sections + k);
     }
@@ -475,41 +433,21 @@ void visit_natural(const SectionLayout& l, const Eigen::VectorXd& ordered, Four&
     }
     transpose(of_slot[0], of_slot[1], of_slot[2], of_slot[3], of_section);
     for (std::size_t s = 0; s < 4; ++s) {
-      if (l.consecutive[c + s] >= 0) four(l.consecutive[c + s], of_section[s]);
+      if (consecutive[c + s] >= 0) std::memcpy(to + consecutive[c + s], &of_section[s], sizeof of_section[s]);
     }
   }
-  for (const SectionLayout::Single& of : l.single) one(of.unknown, ordered[of.entry]);
-  for (const SectionLayout::Single& of : l.single_first) {
-    one(of.unknown, root_half * (ordered[of.entry] + ordered[of.paired]));
-  }
-  for (const SectionLayout::Single& of : l.single_second) {
-    one(of.unknown, root_half * (ordered[of.paired] - ordered[of.entry]));
-  }
+  for (const Single& of : single) to[of.unknown] = value(ordered, of.unknown);
 }
 
-}  // namespace
-
-void SectionLayout::out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const {
-  double* const to = natural.data();
-  visit_natural(
-      *this, ordered, [to](int u, const Pack& values) { std::memcpy(to + u, &values, sizeof values); },
-      [to](int u, double value) { to[u] = value; });
-}
-
-void SectionLayout::out_of(const Eigen::VectorXd& increment, const StepEnd& end) const {
-  visit_natural(
-      *this, increment,
-      [&end](int first, const Pack& delta) {
-        Pack u, v, w;
-        std::memcpy(&u, end.u + first, sizeof u);
-        std::memcpy(&v, end.v + first, sizeof v);
-        std::memcpy(&w, end.w + first, sizeof w);
-        end.move(u, v, w, delta);
-        std::memcpy(end.u + first, &u, sizeof u);
-        std::memcpy(end.v + first, &v, sizeof v);
-        std::memcpy(end.w + first, &w, sizeof w);
-      },
-      [&end](int u, double delta) { end.move(static_cast<std::size_t>(u), delta); });
+void SectionLayout::set(int u, double value, Eigen::VectorXd& ordered) const noexcept {
+  const auto [sum, difference, other] = standing[static_cast<std::size_t>(u - range.begin)];
+  if (other < 0) {
+    ordered[sum] = value;
+    return;
+  }
+  const double of_other = this->value(ordered, other);
+  ordered[sum] = root_half * (value + of_other);
+  ordered[difference] = root_half * (u < other ? value - of_other : of_other - value);
 }
 
 void SectionLayout::spread_interfaces(Eigen::VectorXd& ordered) const {
@@ -571,7 +509,7 @@ SectionLayout::Entries SectionLayout::entries(std::initializer_list<const Sparse
 std::size_t SectionLayout::bytes() const noexcept {
   const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
   return of(place) + of(interfaces) + of(border_of) + of(standing) + of(unknown) + of(partner) + of(consecutive) +
-         of(single) + of(single_first) + of(single_second) + of(interface_pair);
+         of(single) + of(interface_pair);
 }
 
 std::optional<SectionLayout> divide(const Sparse& matrix, const UnknownPlaces& places, const MirrorPairs& pairs,

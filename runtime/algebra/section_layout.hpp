@@ -8,18 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "railtab/runtime/algebra/step_end.hpp"
 #include "railtab/runtime/base/dof_range.hpp"
 #include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
-
-/// Sums of some vectors of all unknowns, each times its weight. Refers to them, and is not kept.
-template <std::size_t vectors, std::size_t sums>
-struct WeightedSums {
-  std::array<const double*, vectors> vector;
-  std::array<std::array<double, vectors>, sums> weight;
-};
 
 /// Where the unknowns of a long structure stand.
 struct UnknownPlaces {
@@ -100,11 +92,8 @@ struct SectionLayout {
   /// An unknown in no such column, or of an interface.
   struct Single {
     int entry, unknown;  ///< entry: where it stands in a vector of this layout
-    int paired;          ///< where the other of its pair stands; without one itself
   };
-  std::vector<Single> single;                      ///< of no pair
-  std::vector<Single> single_first;                ///< first of a pair
-  std::vector<Single> single_second;               ///< second of a pair
+  std::vector<Single> single;
   std::vector<std::array<int, 2>> interface_pair;  ///< where interface unknowns that are a pair stand
   /// Where the first entry of such a column, the next ones `sections` further each, stands in a vector of this layout.
   [[nodiscard]] static constexpr std::size_t column_begin(std::size_t column) noexcept {
@@ -115,6 +104,10 @@ struct SectionLayout {
   [[nodiscard]] Eigen::Index interface_begin() const noexcept {
     return border_begin() + Eigen::Index{sections} * borders;
   }
+  [[nodiscard]] Eigen::Index size() const noexcept {  ///< of a vector of this layout
+    return interface_begin() + static_cast<Eigen::Index>(interfaces.size());
+  }
+  [[nodiscard]] bool contains(int u) const noexcept { return u >= range.begin && u < range.end(); }
   /// Of its lists [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept;
   /// Position of an unknown in a vector of this layout.
@@ -123,15 +116,17 @@ struct SectionLayout {
     return p.section < 0 ? interface_begin() + p.number : Eigen::Index{sections} * p.number + p.section;
   }
 
-  /// Sets the slots and the interface unknowns: one vector, or two sums of three vectors.
-  template <std::size_t vectors, std::size_t sums>
-  void into(const WeightedSums<vectors, sums>& natural, const std::array<Eigen::VectorXd*, sums>& ordered) const;
-  void into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const {
-    into(WeightedSums<1, 1>{{natural.data()}, {{{1.0}}}}, {&ordered});
-  }
+  /// Sets the slots and the interface unknowns.
+  void into(const Eigen::VectorXd& natural, Eigen::VectorXd& ordered) const;
   void out_of(const Eigen::VectorXd& ordered, Eigen::VectorXd& natural) const;
-  /// Ends a step of the unknowns in the range with an increment in this layout.
-  void out_of(const Eigen::VectorXd& increment, const StepEnd& end) const;
+  /// One unknown of a vector in this layout. @pre contains(u)
+  [[nodiscard]] double value(const Eigen::VectorXd& ordered, int u) const noexcept {
+    const auto [sum, difference, other] = standing[static_cast<std::size_t>(u - range.begin)];
+    if (other < 0) return ordered[sum];
+    return root_half * (ordered[sum] + (u < other ? ordered[difference] : -ordered[difference]));
+  }
+  /// Sets it, and leaves the other of its pair as it is. @pre contains(u)
+  void set(int u, double value, Eigen::VectorXd& ordered) const noexcept;
   /// Copies interface unknowns to the borders beside the sections.
   void spread_interfaces(Eigen::VectorXd& ordered) const;
   /// Adds what stands at the borders to the interface unknowns.

@@ -215,7 +215,15 @@ void SectionedLdlt::eliminate(Numbers& n, std::string_view message) const {
 }
 
 void SectionedLdlt::store(const Numbers& numbers) {
+  inverse_D_ = numbers.diagonal;
   for (const Strip& strip : strip_) {
+    for (int j = 0; j < strip.columns; ++j) {
+      const int* const unknown = &layout_->unknown[index(slot_[index(strip.slot + j)]) * side_by_side];
+      // A solution is zero where a section lacks the unknown: SectionedProduct leaves what it will in a load there.
+      for (int k = 0; k < side_by_side; ++k) {
+        if (unknown[k] < 0) inverse_D_[index(strip.first + j)][k] = 0.0;
+      }
+    }
     float* value = value_.data() + index(strip.value) * side_by_side;
     for (int row = 1; row < strip.columns + strip.rows; ++row) {
       for (int j = 0; j < std::min(row, strip.columns); ++j) {
@@ -224,7 +232,6 @@ void SectionedLdlt::store(const Numbers& numbers) {
       }
     }
   }
-  inverse_D_ = numbers.diagonal;
 }
 
 void SectionedLdlt::factor_interfaces(const Numbers& numbers, std::string_view message) {
@@ -335,14 +342,7 @@ void SectionedLdlt::load(const Path& path, std::span<const int> few, double weig
 }
 
 void SectionedLdlt::read(std::span<const int> few, const Vector& ordered, Vector& natural) const {
-  for (int unknown : few) {
-    const auto [sum, difference, other] = layout_->standing[index(unknown - range_begin())];
-    if (other < 0) {
-      natural[unknown] = ordered[sum];
-    } else {
-      natural[unknown] = root_half * (ordered[sum] + (unknown < other ? ordered[difference] : -ordered[difference]));
-    }
-  }
+  for (int unknown : few) natural[unknown] = layout_->value(ordered, unknown);
 }
 
 void SectionedLdlt::forward_interfaces(Vector& y) const {

@@ -71,16 +71,11 @@ SectionedProduct::SectionedProduct(const Sparse& stiffness, const Sparse& dampin
   }
 }
 
-void SectionedProduct::subtract(const WeightedSums<3, 2>& motion, Buffers& buffers, Eigen::VectorXd& ordered) const {
+void SectionedProduct::subtract(Motion& motion, Eigen::VectorXd& ordered) const {
   const SectionLayout& l = *layout_;
-  if (buffers.u.size() != ordered.size()) {
-    buffers.u.setZero(ordered.size());
-    buffers.v.setZero(ordered.size());
-  }
-  l.into(motion, {&buffers.u, &buffers.v});
-  l.spread_interfaces(buffers.u);
-  l.spread_interfaces(buffers.v);
-  const Lanes *const U = lanes(buffers.u), *const V = lanes(buffers.v);
+  l.spread_interfaces(motion.u);
+  l.spread_interfaces(motion.v);
+  const Lanes *const U = lanes(motion.u), *const V = lanes(motion.v);
   Lanes* const y = lanes(ordered);
   for (int j = 0; j < l.slots; ++j) {
     const auto column = static_cast<std::size_t>(j);
@@ -102,7 +97,7 @@ void SectionedProduct::subtract(const WeightedSums<3, 2>& motion, Buffers& buffe
   }
   const Eigen::Index first = l.interface_begin();
   for (const InterfaceEntry& e : interface_) {
-    ordered[first + e.row] -= e.stiffness * buffers.u[first + e.column] + e.damping * buffers.v[first + e.column];
+    ordered[first + e.row] -= e.stiffness * motion.u[first + e.column] + e.damping * motion.v[first + e.column];
   }
 }
 

@@ -16,15 +16,15 @@ class SectionedProduct {
   SectionedProduct(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping,
                    std::shared_ptr<const SectionLayout> layout);
 
-  /// Both motions in the layout, caller-owned.
-  struct Buffers {
+  /// Displacement and velocity in the layout.
+  struct Motion {
     Eigen::VectorXd u, v;
   };
-  /// ordered <- ordered − K u − C v. @param motion u and v @param ordered room for the whole layout
-  void subtract(const WeightedSums<3, 2>& motion, Buffers& buffers, Eigen::VectorXd& ordered) const;
+  /// ordered <- ordered − K u − C v. @param motion its borders are set @param ordered room for the whole layout
+  void subtract(Motion& motion, Eigen::VectorXd& ordered) const;
 
   [[nodiscard]] std::size_t bytes() const noexcept;
-  [[nodiscard]] const SectionLayout& layout() const noexcept { return *layout_; }
+  [[nodiscard]] const std::shared_ptr<const SectionLayout>& layout() const noexcept { return layout_; }
 
  private:
   struct Pair {

@@ -29,6 +29,10 @@ DeckEnvelope::DeckEnvelope(const VsiModel& model, double cut_off, double step)
   }
   const auto nodes = std::ranges::find(groups_, DeckQuantity::displacement, &Group::quantity);
   if (nodes != groups_.end()) nodes_ = *nodes;
+  const auto& rows = deck().rows;
+  unknowns_.assign(rows.innerIndexPtr(), rows.innerIndexPtr() + rows.nonZeros());
+  std::ranges::sort(unknowns_);
+  unknowns_.erase(std::ranges::unique(unknowns_).begin(), unknowns_.end());
   node_rows_ = deck().rows.middleRows(static_cast<Eigen::Index>(nodes_.first), static_cast<Eigen::Index>(nodes_.count));
 }
 
@@ -50,13 +54,14 @@ std::vector<DeckPlaces> DeckEnvelope::places() const {
 }
 
 void DeckEnvelope::add(const VsiState& state) {
-  values_.noalias() = deck().rows * state.structure.displacement;
-  acceleration_.noalias() = node_rows_ * state.structure.acceleration;
+  const LinearMotion& motion = state.structure.at(unknowns_);
+  values_.noalias() = deck().rows * motion.displacement;
+  acceleration_.noalias() = node_rows_ * motion.acceleration;
   const StructureSupports& supports = model_.structure->supports;
   if (model_.ground_motion && supports.carried_deck.size() > 0) {
-    const SupportMotion motion = support_motion(*model_.ground_motion, supports.x, state.time);
-    values_ += supports.carried_deck * motion.displacement;
-    const Eigen::VectorXd carried = supports.carried_deck * motion.acceleration;
+    const SupportMotion ground = support_motion(*model_.ground_motion, supports.x, state.time);
+    values_ += supports.carried_deck * ground.displacement;
+    const Eigen::VectorXd carried = supports.carried_deck * ground.acceleration;
     acceleration_ += carried.segment(static_cast<Eigen::Index>(nodes_.first), static_cast<Eigen::Index>(nodes_.count));
   }
   const auto span_of = [](const Eigen::VectorXd& v) {

@@ -43,7 +43,8 @@ class DeckEnvelope {
   const VsiModel& model_;
   double step_;
   std::vector<Group> groups_;
-  Group nodes_{};  // the vertical displacements
+  Group nodes_{};              // the vertical displacements
+  std::vector<int> unknowns_;  // of the channels
   Eigen::VectorXd values_, acceleration_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> node_rows_;
   long samples_ = 0;

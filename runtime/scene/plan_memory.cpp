@@ -25,8 +25,9 @@ constexpr double number = sizeof(double);
 // Vectors of all degrees of freedom of the structure.
 constexpr double state_vectors = 5.0;                        // LinearMotion
 constexpr double start_vectors = 6.0 * state_vectors + 8.0;  // states of steady_start(), loads and solutions
-constexpr double step_vectors = 2.0 * state_vectors + 12.0;  // StepWorkspace, and the state that the run begins with
-constexpr double energy_vectors = 2.0 * state_vectors;       // EnergyAccount
+// StepWorkspace, the state that the run begins with, and the motion in the order of its sections
+constexpr double step_vectors = 2.0 * state_vectors + 13.0 + 3.0;
+constexpr double energy_vectors = 2.0 * state_vectors;  // EnergyAccount
 constexpr double small = 1 << 20;    // bytes: vectors that the allocator keeps when they are freed, in pieces
 constexpr double most_pieces = 8e6;  // bytes: of what the start has freed, where it is not used again
 constexpr double allocator = 1.03;   // of what is asked of it: ends of pages and pieces

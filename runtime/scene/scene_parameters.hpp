@@ -174,10 +174,15 @@ struct KeyChange {
   std::string value;  ///< as TOML writes it, files relative to the scene; empty: the scene shall not have the key
 };
 
+/// Which of the files that a scene names have to be there: all, or those of [train], [vehicle] and [structure] alone,
+/// for commands that use neither contact nor irregularity nor loads.
+enum class SceneFiles { all, of_train_and_structure };
+
 /// @param changes made in their order before the scene is read; its text says them in a comment at its end
 /// @throws InputError with file and line: unknown key (with the nearest valid spelling), wrong type, value out of
 /// range,
 ///         missing file; with the changes.
-[[nodiscard]] SceneParameters read_scene(const std::filesystem::path& file, const std::vector<KeyChange>& changes = {});
+[[nodiscard]] SceneParameters read_scene(const std::filesystem::path& file, const std::vector<KeyChange>& changes = {},
+                                         SceneFiles files = SceneFiles::all);
 
 }  // namespace railtab

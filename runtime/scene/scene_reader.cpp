@@ -29,6 +29,7 @@ struct Assign {
   const std::filesystem::path& file;
   const Leaf& leaf;
   std::string_view unit;
+  SceneFiles needed_files;
 
   void operator()(const NumberKey& key) const { key.member(draft) = number_in(key.range); }
   void operator()(const OptionalNumberKey& key) const { key.member(draft) = number_in(key.range); }
@@ -41,16 +42,19 @@ struct Assign {
     }
     key.member(draft) = static_cast<int>(whole->get());
   }
-  void operator()(const TextKey& key) const { key.member(draft) = key.names ? one_of(key.names()) : text("a text"); }
+  void operator()(const TextKey& key) const {
+    key.member(draft) = key.names ? one_of(key.names()) : text("a text that is not empty");
+  }
   void operator()(const FileKey& key) const {
     const std::filesystem::path named = file.parent_path() / text("a file name");
-    if (!is_file(named)) {
+    if (is_file(named)) {
+      draft.parameters.files.push_back(named);
+    } else if (needed()) {
       std::error_code unreadable;
       const bool none = !std::filesystem::exists(named, unreadable);
       throw leaf_error(file, leaf, fmt::format("{} {}", none ? "no file" : what_is_at(named), named.string()),
                        "an existing file, relative to the scene");
     }
-    draft.parameters.files.push_back(named);
     key.member(draft) = named;
   }
   void operator()(const ProfileKey& key) const { key.member(draft) = profile(key.kind); }
@@ -102,6 +106,12 @@ struct Assign {
   }
 
  private:
+  /// Whether the file that the key names has to be there.
+  [[nodiscard]] bool needed() const {
+    const std::string_view section = leaf.section();
+    return needed_files == SceneFiles::all || section == "train" || section == "vehicle" || section == "structure";
+  }
+
   [[nodiscard]] InputError error(std::string_view expected) const {
     return leaf_error(file, leaf, found_text(*leaf.node), expected);
   }
@@ -212,6 +222,7 @@ struct Assign {
       draft.parameters.files.push_back(named);
       return named.string();
     }
+    if (!needed()) return name;
     try {
       static_cast<void>(standard_profile(kind, name, 0.0));  // knows other spellings of the names too
     } catch (const InputError&) {
@@ -264,7 +275,7 @@ void finish_entry(SceneDraft& draft, std::string_view section) {
   }
 }
 
-void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves) {
+void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vector<Leaf>& leaves, SceneFiles files) {
   const Leaf* heading = nullptr;  // of the entry being read
   for (const Leaf& leaf : leaves) {
     if (leaf.entry >= 0 && is_list_section(leaf.path)) {
@@ -273,7 +284,7 @@ void assign(SceneDraft& draft, const std::filesystem::path& file, const std::vec
       continue;
     }
     if (const KeyRow* key = find_key(leaf.path)) {
-      std::visit(Assign{draft, file, leaf, key->unit}, key->value);
+      std::visit(Assign{draft, file, leaf, key->unit, files}, key->value);
     } else if (!is_section(leaf.path)) {
       throw unknown_key(file, leaf);
     } else if (!leaf.node->is_table()) {
@@ -335,7 +346,8 @@ SceneParameters settle(SceneDraft draft, const std::filesystem::path& file, cons
 
 namespace railtab {
 
-SceneParameters read_scene(const std::filesystem::path& file, const std::vector<KeyChange>& changes) {
+SceneParameters read_scene(const std::filesystem::path& file, const std::vector<KeyChange>& changes, SceneFiles files) {
+  if (file.empty()) throw input_error("scene", "an empty name", "the name of a TOML scene");
   scene::SceneDraft draft;
   draft.parameters.text = read_toml_text(file, "a TOML scene");
   check_toml_bounds(draft.parameters.text, file);
@@ -346,7 +358,7 @@ SceneParameters read_scene(const std::filesystem::path& file, const std::vector<
     in_file(file.string(), [&] { scene::change_keys(changes, root); });
     if (!changes.empty()) draft.parameters.text += fmt::format("\n# changed: {}\n", scene::changes_text(changes));
     const std::vector<scene::Leaf> leaves = scene::leaves_of(root, file);
-    scene::assign(draft, file, leaves);
+    scene::assign(draft, file, leaves, files);
     return scene::settle(std::move(draft), file, leaves);
   } catch (const toml::parse_error& wrong) {
     const toml::source_position at = wrong.source().begin;

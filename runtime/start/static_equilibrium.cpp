@@ -294,7 +294,7 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   }
 
   for (report.iterations = 0; report.iterations < max_iterations && !report.converged; ++report.iterations) {
-    rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
+    rail_deviation(model, contacts, state.time, state.structure.whole().displacement, problem.deviation);
     if (model.normal_contact == NormalContact::hertz) add_element_slopes(contacts, state.contact.force, problem);
     if (share.deviation < 1.0) scale(share.deviation, problem.deviation);
     for (int v = 0; v < vehicles; ++v) {
@@ -337,9 +337,9 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
       motion.displacement = next;
     }
     if (structure) {
-      set_rail_forces(contacts, state.contact.force, state.structure);
-      report.change =
-          std::max(report.change, structure->respond(state.structure.contact_load, state.structure.displacement));
+      LinearMotion& motion = state.structure.whole();
+      set_rail_forces(contacts, state.contact.force, motion);
+      report.change = std::max(report.change, structure->respond(motion.contact_load, motion.displacement));
     }
     const double contact_change = (state.contact.displacement - contact_before).cwiseAbs().maxCoeff();
     const bool gains = report.change < 0.5 * change_before;
@@ -349,13 +349,13 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
     // has not vanished.
     if (report.converged && unbalanced > balanced) return {.iterations = report.iterations + 1};
   }
-  if (structure) structure->finish(state.structure.displacement);
+  if (structure) structure->finish(state.structure.whole().displacement);
   if (report.converged && off_its_rail(model, problem, state.contact.displacement)) report.converged = false;
   state.contact.step_load = state.contact.force;
   state.deflection.force = state.deflection.slope_force = rail_part(state.contact.force);
   state.deflection.rate.setZero();
   for (LinearMotion& motion : state.vehicle) motion.step_load = motion.contact_load;
-  state.structure.step_load = state.structure.contact_load;
+  state.structure.loads().step_load = state.structure.loads().contact_load;
   // The pitch unknowns are rates: hand them to the vehicles as such.
   for (int w = 0; w < model.wheelsets(); ++w) {
     const int per_vehicle = model.wheelsets_per_vehicle();
@@ -447,7 +447,7 @@ EquilibriumReport equilibrium(const VsiModel& model, RestOperators& rest, const 
 void follow_rails(const VsiModel& model, VsiState& state) {
   const std::vector<RailContact> contacts = place_wheels(model, state.time);
   std::vector<std::array<RailHeadMotion, 2>> rail;
-  rail_deviation(model, contacts, state.time, Eigen::VectorXd::Zero(state.structure.displacement.size()), rail);
+  rail_deviation(model, contacts, state.time, Eigen::VectorXd::Zero(state.structure.dofs()), rail);
   const double V = model.speed(state.time);
   const TrainContact train = model.train_contact();
   const int per_vehicle = model.wheelsets_per_vehicle();
@@ -467,7 +467,7 @@ void follow_rails(const VsiModel& model, VsiState& state) {
 
 EquilibriumReport static_equilibrium(const VsiModel& model, VsiState& state) {
   RestOperators rest(model);
-  return equilibrium(model, rest, Eigen::VectorXd::Zero(state.structure.displacement.size()), state);
+  return equilibrium(model, rest, Eigen::VectorXd::Zero(state.structure.dofs()), state);
 }
 
 namespace {
@@ -476,7 +476,7 @@ namespace {
 EquilibriumReport travelling_equilibrium(const VsiModel& model, VsiState& state) {
   const double time_step = travel_between / model.contact.speed;
   RestOperators rest(model);
-  Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.displacement.size());
+  Eigen::VectorXd inertia = Eigen::VectorXd::Zero(state.structure.dofs());
   EquilibriumReport report = equilibrium(model, rest, inertia, state);
   if (!model.structure || !report.converged || !(model.contact.speed > 0.0)) return report;
 
@@ -484,7 +484,7 @@ EquilibriumReport travelling_equilibrium(const VsiModel& model, VsiState& state)
   // series in (V / critical speed)², and in what dampers bear over what springs do. A second pass settles the contacts.
   // Where the first term is no small one, nothing follows from it, and the structure rests.
   const VsiState at_rest = state;
-  LinearMotion& structure = state.structure;
+  LinearMotion& structure = state.structure.whole();
   constexpr int passes = 4;
   constexpr double largest_term = 0.5;
   const double most = largest_term * structure.displacement.cwiseAbs().maxCoeff();
@@ -500,10 +500,10 @@ EquilibriumReport travelling_equilibrium(const VsiModel& model, VsiState& state)
       report.steady = report.steady && r.converged;
     }
     if (!report.steady) break;
-    structure.velocity = (after.structure.displacement - before.structure.displacement) / (2.0 * time_step);
-    structure.acceleration =
-        (after.structure.displacement - 2.0 * structure.displacement + before.structure.displacement) /
-        (time_step * time_step);
+    const Eigen::VectorXd &u = structure.displacement, &u_before = before.structure.whole().displacement,
+                          &u_after = after.structure.whole().displacement;
+    structure.velocity = (u_after - u_before) / (2.0 * time_step);
+    structure.acceleration = (u_after - 2.0 * u + u_before) / (time_step * time_step);
     inertia = -(model.structure->mass * structure.acceleration) - model.structure->damping * structure.velocity;
     const Eigen::VectorXd displacement = structure.displacement;
     const EquilibriumReport r = equilibrium(model, rest, inertia, state);

@@ -225,7 +225,7 @@ bool TomlSection::flag(std::string_view key) {
 std::string TomlSection::text(std::string_view key) {
   const toml::node& node = require(key, "a text");
   const toml::value<std::string>* text = node.as_string();
-  if (!text || text->get().empty()) throw error(key, found_text(node), "a text");
+  if (!text || text->get().empty()) throw error(key, found_text(node), "a text that is not empty");
   return text->get();
 }
 

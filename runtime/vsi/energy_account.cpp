@@ -50,7 +50,7 @@ EnergyAccount::Instant EnergyAccount::observe(const VsiState& state) {
     now.vehicle_velocity.push_back(m.velocity);
   }
   if (model_.structure) {
-    const LinearMotion& m = state.structure;
+    const LinearMotion& m = state.structure.whole();
     b.kinetic += 0.5 * m.velocity.dot(model_.structure->mass * m.velocity);
     b.strain += 0.5 * m.displacement.dot(model_.structure->stiffness * m.displacement);
     const std::vector<RailContact> contacts = place_wheels(model_, state.time);

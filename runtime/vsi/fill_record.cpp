@@ -97,8 +97,11 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   }
   if (!model.structure) return;
   record.nodes.resize(model.structure->nodes.size());
-  for (std::size_t n = 0; n < record.nodes.size(); ++n)
-    fill_node(*model.structure, n, state.structure, record.nodes[n]);
+  const StructureModel& structure = *model.structure;
+  if (structure.summed_nodes.size() > 0) static_cast<void>(state.structure.whole());
+  for (std::size_t n = 0; n < record.nodes.size(); ++n) {
+    fill_node(structure, n, state.structure.at(structure.nodes[n].dof), record.nodes[n]);
+  }
   add_carried(model, record);
 }
 

@@ -192,7 +192,7 @@ class HertzContacts : public ContactLaw {
   void gather_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
     gather_rails(step.contacts, ws.structure_predicted, problem_.predicted);
     gather_rails(step.contacts, ws.structure_predicted_velocity, problem_.predicted_velocity);
-    gather_rails(step.contacts, state.structure.velocity, begin_velocity_);
+    gather_rails(step.contacts, ws.structure_velocity, begin_velocity_);
     gather_rails(step.contacts, ws.structure_free, problem_.free);
     for (int wheel = 0; wheel < static_cast<int>(step.contacts.size()); ++wheel) {
       const int k = rail_unknown(wheel);

@@ -192,6 +192,8 @@ const StepOperators& Integrator::operators(int level, double end) {
 
 void Integrator::reinitialise(VsiState& state) {
   contact_law_->reinitialise();
+  // What a resumed run reads is rounded when it is brought into the order of the next step.
+  static_cast<void>(state.structure.whole());
   if (force_rule_.may_keep_energy()) evaluate_contact_at(model_, state);
   if (account_ || (!energy_ && !contact_energy_) || model_.normal_contact != NormalContact::hertz) return;
   account_.emplace(model_, state);

@@ -74,8 +74,9 @@ inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Predict
   p.weighted_velocity = weight * p.velocity - alpha * motion.velocity;
 }
 
-/// Closes a step with increments over its predictor. Refers to the motion.
-inline StepEnd step_end(const HhtScheme& scheme, LinearMotion& motion) {
+/// Closes a step with increments over its predictor. Refers to the motion's vectors.
+template <class Motion>
+[[nodiscard]] StepEnd step_end(const HhtScheme& scheme, Motion& motion) {
   const NewmarkPredictor predictor(scheme);
   return {motion.displacement.data(),
           motion.velocity.data(),

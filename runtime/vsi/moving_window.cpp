@@ -188,7 +188,7 @@ DofRange MovingWindow::move(VsiState& state) {
   from_ = now.from;
   to_ = now.to;
   if (placed_ && (now == before || step == moved_at_)) return range;
-  LinearMotion& structure = state.structure;
+  LinearMotion& structure = state.structure.whole();
   const std::array motions{&structure.displacement, &structure.velocity, &structure.acceleration};
   Eigen::VectorXd lost = structure.displacement;  // what no mode keeps of it
   Eigen::Index first = 0;
@@ -242,7 +242,7 @@ void MovingWindow::note_error(const Eigen::VectorXd& motion, const Eigen::Vector
 void MovingWindow::join(const DofRange& stayed, double was_to, const LinearMotion& left, const DofRange& range,
                         VsiState& state) const {
   const StructureModel& s = *model_.structure;
-  LinearMotion& motion = state.structure;
+  LinearMotion& motion = state.structure.whole();
   const auto forces = [&](const Eigen::VectorXd& w, const Eigen::VectorXd& v) -> Eigen::VectorXd {
     return s.stiffness * w + s.damping * v;
   };
@@ -297,11 +297,7 @@ void MovingWindow::step_span(std::size_t index, Eigen::Index first, const Eigen:
     const auto rows = followed.shape.middleRows<together>(static_cast<Eigen::Index>(i));
     const Eigen::Matrix<double, together, 3> motion = rows.lazyProduct(coordinates);
     for (std::size_t k = 0; k < together && i + k < followed.dofs.size(); ++k) {
-      const int dof = followed.dofs[i + k];
-      const auto row = static_cast<Eigen::Index>(k);
-      state.structure.displacement[dof] = motion(row, 0);
-      state.structure.velocity[dof] = motion(row, 1);
-      state.structure.acceleration[dof] = motion(row, 2);
+      state.structure.set(followed.dofs[i + k], motion.row(static_cast<Eigen::Index>(k)));
     }
   }
 }

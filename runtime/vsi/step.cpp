@@ -48,7 +48,6 @@ void close_structure_load(const StepContext& step, const StepWorkspace& ws, Line
 void predict_structure(const StepContext& step, const VsiState& state, StepWorkspace& ws) {
   const StructureResponse& structure = *step.operators.structure;
   const DofRange& active = structure.active();
-  const LinearMotion& motion = state.structure;
   for (int dof : ws.rail_dofs) ws.structure_load[dof] = 0.0;
   ws.rail_dofs.clear();
   ws.rail_dofs_ahead.clear();
@@ -58,13 +57,15 @@ void predict_structure(const StepContext& step, const VsiState& state, StepWorks
   }
   std::erase_if(ws.rail_dofs_ahead, [&](int dof) { return dof < active.begin || dof >= active.end(); });
   const NewmarkPredictor predictor(step.hht);
+  const LinearMotion& motion = state.structure.at(ws.rail_dofs);
   for (int dof : ws.rail_dofs) {
     const double velocity = motion.velocity[dof], acceleration = motion.acceleration[dof];
     ws.structure_predicted[dof] = predictor.displacement(motion.displacement[dof], velocity, acceleration);
     ws.structure_predicted_velocity[dof] = predictor.velocity(velocity, acceleration);
+    ws.structure_velocity[dof] = velocity;
   }
   if (is_endpoint(step)) find_loaded(motion, active, ws.past_rail_dofs);
-  structure.begin_step(motion, known_load(step, motion, ws), {ws.rail_dofs, ws.rail_dofs_ahead}, ws.structure);
+  structure.begin_step(state.structure, known_load(step, motion, ws), {ws.rail_dofs, ws.rail_dofs_ahead}, ws.structure);
   ws.structure.substitution.respond(structure.factor(), ws.structure_free);
 }
 
@@ -120,7 +121,7 @@ void close(const StepContext& step, VsiState& state, ContactLaw& contacts, StepW
     const Stopwatch watch = report.times.measure(Phase::structure);
     const StructureResponse& structure = *step.operators.structure;
     structure.finish_step(ws.structure, state.structure);
-    close_structure_load(step, ws, state.structure);
+    close_structure_load(step, ws, state.structure.loads());
   }
   const Stopwatch watch = report.times.measure(Phase::vehicle);
   contacts.close(step, state, ws);
@@ -135,6 +136,7 @@ StepWorkspace::StepWorkspace(const VsiModel& model)
       structure_load(Eigen::VectorXd::Zero(model.structure ? model.structure->dofs() : 0)),
       structure_predicted(structure_load),
       structure_predicted_velocity(structure_load),
+      structure_velocity(structure_load),
       structure_free(structure_load),
       solution(VsiState(model).contact) {}
 
@@ -176,7 +178,7 @@ void evaluate_contact_at(const VsiModel& model, VsiState& state) {
     scatter_wheelset_forces(model, v, now.end_force, load);
     add_element_forces(model, state, v, load);
   }
-  if (model.structure) set_rail_forces(contacts, now.end_force, state.structure);
+  if (model.structure) set_rail_forces(contacts, now.end_force, state.structure.loads());
   state.contact.end_force = std::move(now.end_force);
   state.contact.rail_x = std::move(now.rail_x);
   state.contact.memory = std::move(now.memory);

@@ -60,6 +60,7 @@ struct StepWorkspace {
   Eigen::VectorXd vehicle_load;                                       ///< of one vehicle
   Eigen::VectorXd structure_load;                                     ///< zero but for rail_dofs
   Eigen::VectorXd structure_predicted, structure_predicted_velocity;  ///< ã, ṽ at the rail_dofs
+  Eigen::VectorXd structure_velocity;                                 ///< there at the beginning of the step
   Eigen::VectorXd structure_past, structure_free, far_field;
   ContactSolution solution;
 

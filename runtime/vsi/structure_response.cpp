@@ -403,35 +403,36 @@ double StructureResponse::table_bytes(const StructureModel& structure, double wi
   return bytes;
 }
 
-void StructureResponse::begin_step(const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
+void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                                    StructureSolution& solution) const {
   assert(load.at || load.weight == 1.0);
   // (1+α)ã − αa(t) and (1+α)ṽ − αv(t)
   const NewmarkPredictor predictor(scheme_);
-  const double weight = scheme_.load_weight();
-  const std::array<double, 3> of_u{1.0, weight * predictor.time_step, weight * predictor.displacement_by_acceleration};
-  const std::array<double, 3> of_v{0.0, 1.0, weight * predictor.velocity_by_acceleration};
+  const double weight = scheme_.load_weight(), u_v = weight * predictor.time_step,
+               u_w = weight * predictor.displacement_by_acceleration, v_w = weight * predictor.velocity_by_acceleration;
+  auto& [u, v] = solution.motion;
   if (product_) {
+    const OrderedMotion& m = motion.in_order(product_->layout());
+    u = m.displacement + u_v * m.velocity + u_w * m.acceleration;
+    v = m.velocity + v_w * m.acceleration;
     solution.substitution.begin_with(*factor_, few, [&](Eigen::VectorXd& known) {
       if (load.at) {
         factor_->into(*load.at, load.weight, load.vector, known);
       } else {
         factor_->into(load.vector, known);
       }
-      product_->subtract(
-          {{motion.displacement.data(), motion.velocity.data(), motion.acceleration.data()}, {of_u, of_v}},
-          solution.motion, known);
+      product_->subtract(solution.motion, known);
     });
     return;
   }
   solution.load.resize(dofs_);
   active_.of(solution.load) = load.weight * active_.of(load.vector);
-  auto& [u, v] = solution.motion;
   u.resize(dofs_);
   v.resize(dofs_);
-  const auto velocity = active_.of(motion.velocity), acceleration = active_.of(motion.acceleration);
-  active_.of(u) = active_.of(motion.displacement) + of_u[1] * velocity + of_u[2] * acceleration;
-  active_.of(v) = velocity + of_v[2] * acceleration;
+  const LinearMotion& begin = motion.whole();
+  const auto velocity = active_.of(begin.velocity), acceleration = active_.of(begin.acceleration);
+  active_.of(u) = active_.of(begin.displacement) + u_v * velocity + u_w * acceleration;
+  active_.of(v) = velocity + v_w * acceleration;
   const Eigen::Index first = active_.begin, last = active_.end();
   double* const f = solution.load.data();
   for (Eigen::Index j = first; j < last; ++j) {
@@ -449,21 +450,21 @@ void StructureResponse::begin_step(const LinearMotion& motion, const KnownLoad& 
   solution.substitution.begin(*factor_, solution.load, few);
 }
 
-void StructureResponse::finish_step(StructureSolution& solution, LinearMotion& motion) const {
+void StructureResponse::finish_step(StructureSolution& solution, StructureMotion& motion) const {
   assert(!at_rest_);
-  if (!product_) {
-    solution.increment.resize(dofs_);
-    solution.substitution.finish(*factor_, solution.increment);
-    update(scheme_, solution.increment, active_, motion);
+  if (product_) {
+    motion.end_step(scheme_, solution.substitution.finish(*factor_));
     return;
   }
-  product_->layout().out_of(solution.substitution.finish(*factor_), step_end(scheme_, motion));
+  solution.increment.resize(dofs_);
+  solution.substitution.finish(*factor_, solution.increment);
+  update(scheme_, solution.increment, active_, motion.whole());
 }
 
 Eigen::VectorXd StructureResponse::increment(const LinearMotion& motion, const Eigen::VectorXd& load) const {
   StructureSolution solution;
   Eigen::VectorXd result = Eigen::VectorXd::Zero(dofs_);
-  begin_step(motion, {load}, {}, solution);
+  begin_step(StructureMotion(motion), {load}, {}, solution);
   solution.substitution.respond(*factor_, result);
   solution.substitution.finish(*factor_, result);
   return result;

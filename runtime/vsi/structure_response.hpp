@@ -10,7 +10,7 @@
 #include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/algebra/sectioned_product.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
-#include "railtab/runtime/vsi/linear_motion.hpp"
+#include "railtab/runtime/vsi/structure_motion.hpp"
 
 namespace railtab {
 
@@ -67,7 +67,7 @@ struct KnownLoad {
 /// Buffers of the structure's solution of one step, reused.
 struct StructureSolution {
   DividedSubstitution substitution;
-  SectionedProduct::Buffers motion;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
+  SectionedProduct::Motion motion;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
   Eigen::VectorXd load, increment;
 };
 
@@ -101,11 +101,15 @@ class StructureResponse {
   /// @param motion at the beginning of the step
   /// @param load what does not come from the motion: past_contact_load() and others
   /// @param few unknowns that the contact forces stand on, or soon will @pre all of them are active
-  void begin_step(const LinearMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
+  void begin_step(const StructureMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                   StructureSolution& solution) const;
   /// Ends such a step under the loads of the last respond(): displacement, velocity and acceleration of the active
   /// unknowns. @pre begin_step() of this response, then respond() @param motion that of begin_step()
-  void finish_step(StructureSolution& solution, LinearMotion& motion) const;
+  void finish_step(StructureSolution& solution, StructureMotion& motion) const;
+  /// Brings a motion into the order in which these steps leave it.
+  void bring_in_order(StructureMotion& motion) const {
+    if (product_) static_cast<void>(motion.in_order(product_->layout()));
+  }
   /// The increment of such a step without contacts.
   [[nodiscard]] Eigen::VectorXd increment(const LinearMotion& motion, const Eigen::VectorXd& load) const;
   /// What begin_step() reads of stiffness and damping [bytes].

@@ -89,7 +89,7 @@ void visit_numbers(State& state, Visitor&& visit) {
     visit_vector(motion.step_load);
   };
   for (auto& motion : state.vehicle) visit_motion(motion);
-  visit_motion(state.structure);
+  visit_motion(state.structure.whole());
   visit_vector(state.left_behind);
   visit_vector(state.contact.displacement);
   visit_vector(state.contact.force);
@@ -137,7 +137,7 @@ void unpack(std::span<const double> numbers, VsiState& state) {
     std::copy_n(numbers.begin(), n, data);
     numbers = numbers.subspan(n);
   });
-  state.structure.loaded.reset();
+  state.structure.loads().loaded.reset();
   state.contact.end_force = state.contact.force;  // but under ContactForceRule::energy: evaluate_contact_at()
 }
 
@@ -312,9 +312,10 @@ ContactProblem present_contact(const VsiModel& model, const VsiState& state) {
     gather_wheelsets(model, v, state.vehicle[index(v)].displacement, problem.predicted);
     gather_wheelsets(model, v, state.vehicle[index(v)].velocity, problem.predicted_velocity);
   }
-  gather_rails(contacts, state.structure.displacement, problem.predicted);
-  gather_rails(contacts, state.structure.velocity, problem.predicted_velocity);
-  rail_deviation(model, contacts, state.time, state.structure.displacement, problem.deviation);
+  const LinearMotion& structure = state.structure.whole();
+  gather_rails(contacts, structure.displacement, problem.predicted);
+  gather_rails(contacts, structure.velocity, problem.predicted_velocity);
+  rail_deviation(model, contacts, state.time, structure.displacement, problem.deviation);
   if (model.normal_contact != NormalContact::hertz) return problem;
   std::vector<RailHeadMotion> between;
   const ElementDeflection& d = state.deflection;

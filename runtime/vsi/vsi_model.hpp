@@ -106,7 +106,7 @@ struct VsiModel {
 struct VsiState {
   double time = 0.0;
   std::vector<LinearMotion> vehicle;
-  LinearMotion structure;
+  StructureMotion structure;
   Eigen::VectorXd left_behind;  ///< modal coordinates, velocities and accelerations of the spans behind a window
   std::vector<Eigen::VectorXd> friction;  ///< per vehicle: force of each force element that is dry friction [N]
   StopExtremes stops;                     ///< where vehicles have force elements

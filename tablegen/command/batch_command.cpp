@@ -90,7 +90,9 @@ std::string other_options(const BatchPair& pair, const GeometryRequest& request)
 }
 
 GeometryRequest request_of(const BatchPair& pair) {
-  return geometry_request(TableCommandLine("tablegen geometry", geometry_options(), {}, pair.arguments));
+  const TableCommandLine line("tablegen geometry", geometry_options(), {}, pair.arguments);
+  require_options_of_profiles(line);
+  return geometry_request(line);
 }
 
 /// Reads every pair before the first is made: what is wrong with the input is said at once.

@@ -11,6 +11,7 @@
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_file.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
+#include "railtab/runtime/profile/standard_profiles.hpp"
 #include "railtab/runtime/vehicle/toml_kind.hpp"
 #include "railtab/runtime/vehicle/toml_section.hpp"
 
@@ -72,6 +73,35 @@ void read_settings(const toml::table& table, const std::filesystem::path& file, 
   }
 }
 
+/// A profile as `tablegen geometry` takes it: files beside the list come first.
+std::string profile_of(const Settings& settings, const char* name, const std::filesystem::path& folder) {
+  const auto setting = settings.find(name);
+  if (setting == settings.end()) return {};
+  const std::string& text = setting->second.text;
+  return is_file(folder / text) ? (folder / text).string() : text;
+}
+
+/// Whether an option acts on a pair's profiles: built-in rails are inclined, files are smoothed.
+bool acts_on_pair(std::string_view option, const Settings& settings, const std::filesystem::path& folder) {
+  const bool built_in_rail = is_standard_profile(ProfileKind::rail, profile_of(settings, "rail", folder));
+  if (option == "rail-inclination") return built_in_rail;
+  return !built_in_rail || !is_standard_profile(ProfileKind::wheel, profile_of(settings, "wheel", folder));
+}
+
+/// A default that acts on the profiles of some pairs is none of the others. One that acts on no pair stays, for the
+/// checks of `tablegen geometry` to reject, as do those that a pair names itself.
+void keep_defaults_that_act(const Settings& defaults, const std::filesystem::path& folder,
+                            std::vector<Settings>& pairs) {
+  for (const char* option : {"rail-inclination", "smoothing"}) {
+    const auto common = defaults.find(option);
+    const auto acts = [&](const Settings& pair) { return acts_on_pair(option, pair, folder); };
+    if (common == defaults.end() || std::none_of(pairs.begin(), pairs.end(), acts)) continue;
+    for (Settings& pair : pairs) {
+      if (!acts(pair) && pair.at(option).line == common->second.line) pair.erase(option);
+    }
+  }
+}
+
 BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file, unsigned line) {
   for (const char* needed : {"wheel", "rail", "output"}) {
     if (!settings.contains(needed)) throw input_error(place(file, line), fmt::format("no {}", needed), "one per pair");
@@ -81,10 +111,9 @@ BatchPair batch_pair(const Settings& settings, const std::filesystem::path& file
   for (const std::string& name : option_names()) {
     const auto setting = settings.find(name);
     if (setting == settings.end() || name == "output") continue;
-    std::string text = setting->second.text;
     const bool profile = name == "wheel" || name == "rail";
-    if (profile && is_file(folder / text)) text = (folder / text).string();
-    pair.arguments.push_back(fmt::format("--{}={}", name, text));
+    pair.arguments.push_back(
+        fmt::format("--{}={}", name, profile ? profile_of(settings, name.c_str(), folder) : setting->second.text));
   }
   pair.arguments.push_back("--output=" + pair.output.string());
   return pair;
@@ -116,16 +145,20 @@ std::vector<BatchPair> read_batch_list(const std::filesystem::path& file) {
     }
   }
   if (!list || list->empty()) throw input_error(file.string(), "no [[pair]]", "one [[pair]] per table");
+  std::vector<Settings> all;
+  for (const toml::node& entry : *list) {
+    read_settings(*entry.as_table(), file, false, all.emplace_back(defaults));
+  }
+  keep_defaults_that_act(defaults, file.parent_path(), all);
   std::vector<BatchPair> pairs;
   std::map<std::filesystem::path, std::string> outputs;
-  for (const toml::node& entry : *list) {
-    Settings settings = defaults;
-    read_settings(*entry.as_table(), file, false, settings);
-    pairs.push_back(batch_pair(settings, file, entry.source().begin.line));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Settings& settings = all[i];
+    pairs.push_back(batch_pair(settings, file, list->get(i)->source().begin.line));
     const BatchPair& pair = pairs.back();
     const auto [first, fresh] = outputs.emplace(std::filesystem::absolute(pair.output).lexically_normal(), pair.place);
     if (!fresh) {
-      throw input_error(place(file, settings["output"].line) + ": output", pair.output.string(),
+      throw input_error(place(file, settings.at("output").line) + ": output", pair.output.string(),
                         fmt::format("another file than that of the pair at {}", first->second));
     }
   }
@@ -138,7 +171,8 @@ std::string geometry_options_text(const std::vector<std::string>& arguments) {
   po::store(po::command_line_parser(arguments).options(options).allow_unregistered().run(), values);
   std::string text;
   for (const std::string& name : option_names()) {
-    if (name == "wheel" || name == "rail" || name == "output" || !values.count(name)) continue;
+    const bool of_profiles = name == "wheel" || name == "rail" || name == "smoothing" || name == "rail-inclination";
+    if (of_profiles || name == "output" || !values.count(name)) continue;
     text += fmt::format("{}{}={}", text.empty() ? "" : " ", name, shortest(values[name].as<std::string>()));
   }
   return text;

@@ -15,13 +15,15 @@ struct BatchPair {
 
 /// Reads a TOML file with one [[pair]] per table and an optional [defaults]; the keys are the options of
 /// `tablegen geometry`, their values numbers, texts as on the command line, or [low, high] for intervals. Profile files
-/// and outputs are relative to the list.
+/// and outputs are relative to the list. A default rail inclination is none of pairs whose rail is a file, a default
+/// smoothing none of built-in profiles, where it acts on other pairs.
 /// @throws InputError naming file, line and key: unknown keys, wrong types, no wheel, rail or output, two pairs with
 /// one output.
 [[nodiscard]] std::vector<BatchPair> read_batch_list(const std::filesystem::path& file);
 
-/// The options that decide the numbers of a table, without profiles and output, numbers in their shortest form:
-/// "gauge=1.435 ...". Equal texts, equal options. @param arguments of `tablegen geometry`
+/// The options that decide the numbers of a table besides its profiles (with smoothing and inclination, which their
+/// points show) and output, numbers in their shortest form: "gauge=1.435 ...". Equal texts, equal options. @param
+/// arguments of `tablegen geometry`
 /// @throws boost::program_options::error
 [[nodiscard]] std::string geometry_options_text(const std::vector<std::string>& arguments);
 

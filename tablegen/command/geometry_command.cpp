@@ -14,8 +14,7 @@ void geometry_command(const std::vector<std::string>& arguments) {
   const TableCommandLine line("tablegen geometry --wheel P --rail P [options] -o FILE.h5", geometry_options(), {},
                               arguments);
   if (line.help_printed()) return;
-  require_profile_to_smooth(line);
-  require_rail_to_incline(line);
+  require_options_of_profiles(line);
   const GeometryRequest request = geometry_request(line);
   if (!line.quiet()) {
     print_notes("geometry", request.search.pair());

@@ -21,6 +21,11 @@ namespace railtab {
 
 namespace {
 
+/// As load_profile() takes a name: built-in ones first.
+bool is_profile_file(ProfileKind kind, const std::string& name) {
+  return !is_standard_profile(kind, name) && is_file(name);
+}
+
 double length_between(const TableCommandLine& line, const std::string& option, double low, double high) {
   const double length = line.number(option);
   require_between("--" + option, length, low, high, "m");
@@ -63,23 +68,23 @@ double requested_noise(const TableCommandLine& line) {
                     fmt::format("0 to {} m, the standard deviation of the noise, such as 3e-6", largest));
 }
 
-void require_profile_to_smooth(const TableCommandLine& line) {
-  if (requested_noise(line) == 0.0 || is_file(line.required("wheel")) || is_file(line.required("rail"))) return;
-  throw input_error("--smoothing",
-                    fmt::format("{} with the built-in profiles {} and {}", line.text("smoothing"), line.text("wheel"),
-                                line.text("rail")),
-                    "a profile file, or no --smoothing: built-in profiles have no noise");
-}
-
 void require_rail_to_incline(const TableCommandLine& line) {
   if (!line.chosen("rail-inclination")) return;
-  const auto is_rail_file = [](const std::string& rail) {
-    return !is_standard_profile(ProfileKind::rail, rail) && is_file(rail);
-  };
   const std::string rail = line.required("rail");
+  const auto is_rail_file = [](const std::string& name) { return is_profile_file(ProfileKind::rail, name); };
   if (!is_rail_file(rail) || (line.given("left-rail") && !is_rail_file(line.text("left-rail")))) return;
   throw input_error("--rail-inclination", fmt::format("{} with the rail file {}", line.text("rail-inclination"), rail),
                     "a built-in rail, or no --rail-inclination: the points of a file are those of the inclined rail");
+}
+
+void require_options_of_profiles(const TableCommandLine& line) {
+  require_rail_to_incline(line);
+  if (requested_noise(line) == 0.0) return;
+  const std::string wheel = line.required("wheel"), rail = line.required("rail");
+  if (is_profile_file(ProfileKind::wheel, wheel) || is_profile_file(ProfileKind::rail, rail)) return;
+  throw input_error("--smoothing",
+                    fmt::format("{} with the built-in profiles {} and {}", line.text("smoothing"), wheel, rail),
+                    "a profile file, or no --smoothing: built-in profiles have no noise");
 }
 
 void require_flanges_between_rails(const WheelRailPair& pair) {

@@ -22,11 +22,12 @@ struct GeometryRequest {
 [[nodiscard]] double requested_inclination(const TableCommandLine& line);
 [[nodiscard]] double requested_noise(const TableCommandLine& line);
 
-/// @throws InputError where --smoothing meets built-in profiles alone, on which it does not act
-void require_profile_to_smooth(const TableCommandLine& line);
-
 /// @throws InputError where --rail-inclination meets rail files alone, whose points stand as the rail does
 void require_rail_to_incline(const TableCommandLine& line);
+
+/// @throws InputError where --smoothing meets built-in profiles alone, on which it does not act, or as
+/// require_rail_to_incline()
+void require_options_of_profiles(const TableCommandLine& line);
 
 /// @throws InputError where the flanges are wider apart at the gauge height than the track gauge
 void require_flanges_between_rails(const WheelRailPair& pair);

@@ -44,8 +44,7 @@ struct Case {
 
 ContactSearch requested_search(const TableCommandLine& line) {
   if (!line.given("table")) {
-    require_profile_to_smooth(line);
-    require_rail_to_incline(line);
+    require_options_of_profiles(line);
     ContactSearch search(requested_pair(line));
     if (!line.quiet()) print_notes("contact", search.pair());
     return search;

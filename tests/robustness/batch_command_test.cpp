@@ -64,6 +64,7 @@ TEST_F(BatchCommand, MakesWhatIsMissingAndSkipsWhatIsDone) {
   // the same numbers said in another way are the same options; others are rejected, unless --overwrite
   const std::string same = defaults + "tolerance = \"0.00000001\"\n" + pair_a;
   EXPECT_EQ(states(batch(same, "--json")), States{"a.h5 done before"});
+  EXPECT_EQ(states(batch(defaults + "rail-inclination = 0.025\n" + pair_a, "--json")), States{"a.h5 done before"});
   const Outcome other = batch(defaults + "tolerance = 3e-8\n" + pair_a);
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("lists/list.toml:6"), std::string::npos) << other.err;
@@ -91,6 +92,26 @@ TEST_F(BatchCommand, OnlyTakesEveryNthPair) {
   EXPECT_EQ(states(batch(list, "--only 1/1 --plan --json")), (States{"a.h5 to do", "b.h5 to do"}));
   EXPECT_EQ(states(batch(list, "--only 3/3 --plan --json")), States{}) << "more tasks than pairs";
   EXPECT_EQ(batch(list, "--only 0/2").exit_code, 2);
+}
+
+// As in tablegen geometry; a default is none of the pairs on whose profiles it does not act, unless there are no
+// others.
+TEST_F(BatchCommand, FilesAreNotInclinedAndBuiltInProfilesNotSmoothed) {
+  std::ofstream(folder_ / "lists/rail.txt") << "points\n";
+  const std::string of_file = "[[pair]]\nwheel = \"cone-1:20\"\nrail = \"rail.txt\"\noutput = \"a.h5\"\n";
+  const std::string inclined = "rail-inclination = \"1:20\"\n", smoothed = "smoothing = 3e-6\n";
+  const std::string message =
+      "--rail-inclination: found 1:20 with the rail file lists/rail.txt, expected a built-in rail";
+  expect_rejected(of_file + inclined, {"lists/list.toml:1: " + message});
+  expect_rejected("[defaults]\n" + inclined + of_file, {"lists/list.toml:3: " + message});
+  expect_rejected(defaults + inclined + of_file + inclined + pair_b, {"lists/list.toml:6: " + message});
+  // with a built-in rail beside it only the points are wrong
+  expect_rejected(defaults + inclined + of_file + pair_b, {"lists/list.toml:6: lists/rail.txt:1: "});
+
+  const std::string built_in = ": --smoothing: found 3e-06 with the built-in profiles cone-1:20 and 60E1";
+  expect_rejected(defaults + pair_a + smoothed, {"lists/list.toml:5" + built_in});
+  expect_rejected(defaults + smoothed + pair_a, {"lists/list.toml:6" + built_in});
+  expect_rejected(defaults + smoothed + pair_b + of_file, {"lists/list.toml:10: lists/rail.txt:1: "});
 }
 
 TEST_F(BatchCommand, WrongLists) {

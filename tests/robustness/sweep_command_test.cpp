@@ -375,6 +375,12 @@ TEST_F(SweepCommand, RejectsWhatMakesNoSweep) {
   rejected({"sweep", "smooth.toml", "--speed", "30", "-o", "none/out"});
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   EXPECT_FALSE(fs::exists(folder_ / "none"));
+  const std::string too_long(300, 'f');
+  named({"sweep", "scene.toml", "--speed", "30", "-o", too_long},
+        "-o: found " + too_long + ": File name too long, expected a folder that can be created");
+  named({"sweep", "scene.toml", "--speed", "30", "-o", too_long + "/out"}, "-o: found no folder ");
+  named({"sweep", "scene.toml", "--speed", "30", "-o", "."},
+        "-o .: found the scene itself, ./scene.toml, in this folder, expected another folder");
   ASSERT_EQ(vsi({"sweep", "smooth.toml", "--speed", "30", "-o", "out", "--quiet"}), 0) << text("log");
   named({"sweep", "scene.toml", "--speed", "30", "-o", "out"},
         "out/scene.toml: found another scene, expected that of the runs in this folder, or another folder for -o; line "

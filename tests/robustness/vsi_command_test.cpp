@@ -57,9 +57,25 @@ TEST_F(VsiCommand, OutputsWithoutAName) {
 
 TEST_F(VsiCommand, MissingFiles) {
   expect_rejected("run absent.toml -o out", "absent.toml: found no such file");
+  expect_rejected("run '' -o out", "scene: found an empty name, expected the name of a TOML scene");
+  expect_rejected("study '' -o out", "plan: found an empty name, expected the name of a plan in TOML");
   expect_rejected("report absent.h5 -o out", "absent.h5");
   expect_rejected("contact absent.h5 --query q.csv -o out", "absent.h5");
   expect_rejected("creep --law polach --query absent.csv -o out", "absent.csv: found no such file");
+}
+
+TEST_F(VsiCommand, BridgesAloneNeedNoFilesOfContactAndLoads) {
+  write("scene.toml",
+        "[contact]\ntable = \"none.h5\"\n[irregularity]\nfile = \"none.csv\"\n[[load]]\nfile = \"none.csv\"\n"
+        "[track]\nlength_before = 40.0\nlength_after = 40.0\n[[bridge]]\nlength = 20.0\n");
+  expect_rejected("run scene.toml -o out", "scene.toml:2: contact.table: found no file none.h5");
+  for (const char* command :
+       {"structure scene.toml", "moving-load scene.toml --speed 50 --train hslm-a1", "fmu scene.toml -o track.fmu"}) {
+    const Outcome outcome = vsi(command);
+    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.output;
+  }
+  write("scene.toml", "[contact]\nmode = \"online\"\n[structure]\nstiffness = \"none.mtx\"\n");
+  expect_rejected("structure scene.toml", "scene.toml:4: structure.stiffness: found no file none.mtx");
 }
 
 TEST_F(VsiCommand, WhatIsNoRegularFileIsNamed) {

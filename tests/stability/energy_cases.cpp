@@ -35,7 +35,7 @@ void balance_accelerations(const VsiModel& model, VsiState& state) {
                                                                 model.vehicle.stiffness * m.displacement);
   }
   if (!model.structure) return;
-  LinearMotion& m = state.structure;
+  LinearMotion& m = state.structure.whole();
   const SparseLdlt mass(model.structure->mass, "the structure's mass is not positive definite");
   m.acceleration = mass.solve(-(model.structure->damping * m.velocity) - model.structure->stiffness * m.displacement);
 }
@@ -52,7 +52,8 @@ CaseResult closed_system(SceneParameters scene) {
       motion.velocity[z] += 0.1 * static_cast<double>(body % 3);
     });
     if (model.structure) {
-      for (Eigen::Index i = 0; i < state.structure.velocity.size(); i += 7) state.structure.velocity[i] += 0.1;
+      Eigen::VectorXd& velocity = state.structure.whole().velocity;
+      for (Eigen::Index i = 0; i < velocity.size(); i += 7) velocity[i] += 0.1;
     }
     for (Eigen::VectorXd* of_wheels : {&state.deflection.force, &state.deflection.slope_force}) of_wheels->setZero();
     balance_accelerations(model, state);

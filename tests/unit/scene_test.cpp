@@ -181,6 +181,26 @@ TEST_F(Scene, MissingFilesAreNamed) {
   EXPECT_THROW(static_cast<void>(read_scene(folder_ / "absent.toml")), InputError);
 }
 
+TEST_F(Scene, FilesThatAreNotNeededMayBeMissing) {
+  const auto read = [&](const std::string& text) {
+    write("scene.toml", text);
+    return read_scene(folder_ / "scene.toml", {}, SceneFiles::of_train_and_structure);
+  };
+  const std::string rest = "[irregularity]\nfile = \"none.csv\"\n";
+  const SceneParameters by_table = read("[contact]\ntable = \"none.h5\"\n" + rest);
+  EXPECT_EQ(by_table.contact.table, folder_ / "none.h5");
+  EXPECT_TRUE(by_table.files.empty());
+  EXPECT_EQ(read("[contact]\ntable = \"pair.h5\"\n" + rest).files,
+            std::vector<std::filesystem::path>{folder_ / "pair.h5"});
+  EXPECT_EQ(read(std::string(online) + "wheel = \"none.prw\"\n").contact.wheel, "none.prw");
+  EXPECT_THROW(static_cast<void>(read(std::string(online) + "[train]\nspeed_file = \"none.csv\"\n")), InputError);
+}
+
+TEST_F(Scene, EmptyTextsAreNamed) {
+  EXPECT_EQ(message("name = \"\"\n" + std::string(online)),
+            "scene.toml:1: name: found the text \"\", expected a text that is not empty");
+}
+
 TEST_F(Scene, PartsThatDoNotFitTogetherAreRejected) {
   EXPECT_TRUE(message("[train]\n").starts_with("scene.toml: contact.mode: found \"table\" without"));
   EXPECT_TRUE(message(std::string(online) + "[track]\nkind = \"rigid\"\n[[bridge]]\n")

@@ -168,17 +168,17 @@ TEST(SectionedProduct, IsThatOfTheMatrices) {
   const SectionedLdlt factor = sectioned.factor();
   const SectionedProduct product(by_sums_and_differences(s.stiffness, sectioned.pairs),
                                  by_sums_and_differences(s.damping, sectioned.pairs), sectioned.layout);
-  const Eigen::MatrixXd vectors = Eigen::MatrixXd::Random(s.dofs(), 3);
-  const auto column = [&](Eigen::Index k) { return vectors.col(k).data(); };
-  const WeightedSums<3, 2> motion{{column(0), column(1), column(2)}, {{{1.0, 0.3, -2.0}, {0.0, 7e2, 1e3}}}};
-  const auto sum = [&](std::size_t k) -> Eigen::VectorXd { return vectors * Eigen::Vector3d(motion.weight[k].data()); };
-  SectionedProduct::Buffers buffers;
+  const Eigen::VectorXd u = Eigen::VectorXd::Random(s.dofs()), v = Eigen::VectorXd::Random(s.dofs());
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(sectioned.layout->size());
+  SectionedProduct::Motion motion{none, none};
+  sectioned.layout->into(u, motion.u);
+  sectioned.layout->into(v, motion.v);
   Eigen::VectorXd ordered = Eigen::VectorXd::Zero(factor.room());
-  product.subtract(motion, buffers, ordered);
+  product.subtract(motion, ordered);
   sectioned.layout->fold_borders(ordered);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(s.dofs());
   factor.out_of(ordered, result);
-  EXPECT_LT(difference(-result, s.stiffness * sum(0) + s.damping * sum(1)), 1e-12);
+  EXPECT_LT(difference(-result, s.stiffness * u + s.damping * v), 1e-12);
 }
 
 TEST(SectionLayout, DividesNoStructureThatIsShortOrUnlike) {

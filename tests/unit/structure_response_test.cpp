@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "railtab/runtime/algebra/elimination_order.hpp"
@@ -41,7 +42,7 @@ Eigen::VectorXd increment(const StructureResponse& response, const LinearMotion&
                           const std::vector<int>& few, StructureSolution& solution) {
   Eigen::VectorXd extra = Eigen::VectorXd::Zero(motion.displacement.size()), result = extra;
   for (int dof : few) extra[dof] = 1e4 + dof;
-  response.begin_step(motion, load, {few, {}}, solution);
+  response.begin_step(StructureMotion(motion), load, {few, {}}, solution);
   solution.substitution.respond(response.factor(), 0.9, extra, result);
   solution.substitution.finish(response.factor(), result);
   return result;
@@ -316,13 +317,18 @@ TEST(StructureResponse, EndsAStepInSectionsAsTheIncrementDoes) {
   for (const DofRange& range : {whole, window}) {
     const StructureResponse response(structure, {.alpha = -0.1, .time_step = 1e-3}, range);
     ASSERT_TRUE(response.in_sections());
-    LinearMotion expected = begin, end = begin;
+    LinearMotion expected = begin;
     update(response.scheme(), response.increment(begin, load), range, expected);
     StructureSolution solution;
-    Eigen::VectorXd nowhere;
-    response.begin_step(begin, {load}, {}, solution);
-    solution.substitution.respond(response.factor(), nowhere);
-    response.finish_step(solution, end);
+    StructureMotion motion(begin);
+    const auto step = [&] {
+      Eigen::VectorXd nowhere;
+      response.begin_step(motion, {load}, {}, solution);
+      solution.substitution.respond(response.factor(), nowhere);
+      response.finish_step(solution, motion);
+    };
+    step();
+    const LinearMotion end = std::as_const(motion).whole();
     for (const auto member : {&LinearMotion::displacement, &LinearMotion::velocity, &LinearMotion::acceleration}) {
       const Eigen::VectorXd &ended = end.*member, &wanted = expected.*member, &began = begin.*member;
       EXPECT_LT((ended - wanted).cwiseAbs().maxCoeff(), 1e-14 * wanted.cwiseAbs().maxCoeff());
@@ -330,6 +336,24 @@ TEST(StructureResponse, EndsAStepInSectionsAsTheIncrementDoes) {
       EXPECT_EQ(ended.head(range.begin), began.head(range.begin));
       EXPECT_EQ(ended.tail(whole.count - range.end()), began.tail(whole.count - range.end()));
     }
+    // The next step goes on in the sections' order, and from what is set in it.
+    const int changed = static_cast<int>(range.begin + range.count / 2);
+    expected.displacement[changed] = 1e-3;
+    expected.velocity[changed] = -0.2;
+    expected.acceleration[changed] = 5.0;
+    motion.set(changed, {1e-3, -0.2, 5.0});
+    update(response.scheme(), response.increment(expected, load), range, expected);
+    step();
+    const std::vector<int> few{changed, held, static_cast<int>(range.begin), changed};
+    StructureMotion read = motion;
+    for (const int dof : few) {
+      if (dof == held) continue;
+      EXPECT_NEAR(read.at(few).displacement[dof], expected.displacement[dof], 1e-15);
+      EXPECT_NEAR(read.at(few).acceleration[dof], expected.acceleration[dof],
+                  1e-13 * expected.acceleration.cwiseAbs().maxCoeff());
+    }
+    EXPECT_LT((motion.whole().velocity - expected.velocity).cwiseAbs().maxCoeff(),
+              1e-13 * expected.velocity.cwiseAbs().maxCoeff());
   }
 }
 

@@ -343,7 +343,7 @@ TEST_F(CoachOnShellDeck, AtRestIsThatOfCalculix) {
     model.vehicle_x = {centre};
     VsiState state(model);
     ASSERT_TRUE(static_equilibrium(model, state).converged);
-    const Eigen::VectorXd found = model.structure->deck.rows * state.structure.displacement;
+    const Eigen::VectorXd found = model.structure->deck.rows * state.structure.whole().displacement;
     const AtRest expected = calculix_at_rest(rails, centre);
     DeckDifference here;
     add(*model.structure, found, expected.down, here);
@@ -356,7 +356,7 @@ TEST_F(CoachOnShellDeck, AtRestIsThatOfCalculix) {
     for (std::size_t w = 0; w < record.wheels.size(); ++w) {
       wheel.add(record.wheels[w].Q, expected.wheels[w / 2][w % 2]);
       rail.add(rail_deflection(model.structure->rail[w % 2], centre + wheelset_places()[w / 2],
-                               state.structure.displacement),
+                               state.structure.whole().displacement),
                expected.rails[w / 2][w % 2]);
     }
   }
@@ -382,10 +382,10 @@ TEST_F(CoachOnShellDeck, InMotionIsThatOfCalculix) {
   Crossing crossing;
   RunObserver observer;
   observer.state = [&](const VsiState& state) {
-    crossing.channels.emplace_back(model.structure->deck.rows * state.structure.displacement);
+    crossing.channels.emplace_back(model.structure->deck.rows * state.structure.whole().displacement);
     std::vector<BallastForces::Force>& forces = crossing.ballast.emplace_back();
     for (int i = 0; i < along; ++i) {
-      for (const BallastForces::Force& force : ballast.under(i, state.structure)) forces.push_back(force);
+      for (const BallastForces::Force& force : ballast.under(i, state.structure.whole())) forces.push_back(force);
     }
   };
   VsiState state(model);

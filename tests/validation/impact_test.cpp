@@ -249,7 +249,7 @@ TEST(Impact, TheStateKnowsWhereContactsLoadTheStructure) {
   std::size_t most = 0;
   RunObserver observer;
   observer.state = [&](const VsiState& now) {
-    const LinearMotion& motion = now.structure;
+    const LinearMotion& motion = now.structure.whole();
     LinearMotion unknown = motion;
     unknown.loaded.reset();
     const DofRange all{0, motion.displacement.size()};

@@ -122,7 +122,7 @@ double energy(const VsiModel& model, const VsiState& state) {
            0.5 * m.displacement.dot(model.vehicle.stiffness * m.displacement) -
            model.vehicle.static_load.dot(m.displacement);
   }
-  const LinearMotion& s = state.structure;
+  const LinearMotion& s = state.structure.whole();
   return sum + 0.5 * s.velocity.dot(model.structure->mass * s.velocity) +
          0.5 * s.displacement.dot(model.structure->stiffness * s.displacement);
 }
@@ -177,8 +177,8 @@ TEST(SharedOperators, LeaveARunAsItIs) {
   run(&shared, -3.0, 1.0, early);
   run(&shared, 0.0, 2.0, again);
   run(nullptr, 0.0, 2.0, alone);
-  EXPECT_GT(alone.structure.displacement.cwiseAbs().maxCoeff(), 0.0);
-  EXPECT_EQ(again.structure.displacement, alone.structure.displacement);
+  EXPECT_GT(alone.structure.whole().displacement.cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(again.structure.whole().displacement, alone.structure.whole().displacement);
   EXPECT_EQ(again.vehicle[0].acceleration, alone.vehicle[0].acceleration);
   EXPECT_EQ(again.contact.end_force, alone.contact.end_force);
 }

@@ -236,9 +236,22 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
   note_short_spans(report, assessment);
 }
 
+/// The speed up to `highest` [m/s] at which a train as moving loads gives the largest acceleration of a deck.
+double governing_speed(const GoverningTrain& governing, const Assessment& assessment, double highest) {
+  LargestResponse worst;
+  worst.speed = highest;
+  const std::vector<LargestResponse> responses =
+      governing.responses.empty() ? largest_responses(governing.train->axles, assessment.decks, highest)
+                                  : governing.responses;
+  for (const LargestResponse& here : responses) {
+    if (here.acceleration > worst.acceleration) worst = here;
+  }
+  return worst.speed;
+}
+
 /// Speeds of a train's runs: those asked for, or the line's and the critical one below it.
-std::vector<double> contact_speeds(const AssessTrain& train, const Request& request, const Assessment& assessment,
-                                   StageReport& report) {
+std::vector<double> contact_speeds(const GoverningTrain& governing, const Request& request,
+                                   const Assessment& assessment, StageReport& report) {
   const double line = assessment.facts.line_speed;
   constexpr double same = 1e-6;
   if (!request.speeds.empty()) {
@@ -249,9 +262,9 @@ std::vector<double> contact_speeds(const AssessTrain& train, const Request& requ
     report.notes.push_back(note + ".");
     return request.speeds;
   }
-  const double critical = std::round(1e3 * governing_speed(train.axles, assessment.decks, line)) / 1e3;
+  const double critical = std::round(1e3 * governing_speed(governing, assessment, line)) / 1e3;
   constexpr double alike = 0.01;
-  const std::string of = train.own ? "the train" : train.name;
+  const std::string of = governing.train->own ? "the train" : governing.train->name;
   const std::string fastest = fmt::format("at the line speed, {:.1f} km/h", 3.6 * line);
   if (critical > (1.0 - alike) * line) {
     report.notes.push_back(fmt::format("Runs {}, at which {} as moving loads accelerates the deck most.", fastest, of));
@@ -264,13 +277,12 @@ std::vector<double> contact_speeds(const AssessTrain& train, const Request& requ
 }
 
 /// Which trains run, and which do not and why.
-std::vector<const AssessTrain*> running_trains(const std::vector<AssessTrain>& trains, const Assessment& assessment,
-                                               StageReport& report) {
-  const std::vector<const AssessTrain*> running =
-      governing_trains(trains, assessment.decks, assessment.facts.line_speed);
+std::vector<GoverningTrain> running_trains(const std::vector<AssessTrain>& trains, const Assessment& assessment,
+                                           StageReport& report) {
+  std::vector<GoverningTrain> running = governing_trains(trains, assessment.decks, assessment.facts.line_speed);
   std::string others;
   for (const AssessTrain& train : trains) {
-    const bool runs = std::find(running.begin(), running.end(), &train) != running.end();
+    const bool runs = std::ranges::find(running, &train, &GoverningTrain::train) != running.end();
     if (train.scene && !runs) others += fmt::format("{}{}", others.empty() ? "" : ", ", train.name);
   }
   if (!others.empty()) {
@@ -292,9 +304,9 @@ std::vector<ContactPlan> contact_plans(const std::vector<AssessTrain>& trains, c
   }
   const int seeds = scene.spectrum ? request.seeds.value_or(scene.assessment.seeds) : request.seeds.value_or(1);
   std::vector<ContactPlan> plans;
-  for (const AssessTrain* train : running_trains(trains, assessment, report)) {
-    const std::vector<double> speeds = contact_speeds(*train, request, assessment, report);
-    plans.push_back(contact_plan(*train, assessment.decks, speeds, seeds));
+  for (const GoverningTrain& governing : running_trains(trains, assessment, report)) {
+    const std::vector<double> speeds = contact_speeds(governing, request, assessment, report);
+    plans.push_back(contact_plan(*governing.train, assessment.decks, speeds, seeds));
     for (const std::string& note : plans.back().notes) {
       const bool there = std::find(report.notes.begin(), report.notes.end(), note) != report.notes.end();
       if (!there) report.notes.push_back(note);

@@ -68,6 +68,20 @@ std::vector<PassagePeaks> merged(std::vector<PassagePeaks> a, const std::vector<
   return a;
 }
 
+LargestResponse largest_response(const AxleTrain& train, const ModalDeck& deck, double highest) {
+  LargestResponse largest;
+  largest.speed = highest;
+  for (const PassagePeaks& p : search_critical_speeds(deck, train, lowest_speed(highest), highest)) {
+    if (p.acceleration.value > largest.acceleration) {
+      largest.acceleration = p.acceleration.value;
+      largest.speed = p.speed;
+    }
+    largest.displacement = std::max(largest.displacement, p.displacement.value);
+    largest.end_rotation = std::max(largest.end_rotation, p.end_rotation.value);
+  }
+  return largest;
+}
+
 }  // namespace
 
 void check_decks(const SceneParameters& scene, Assessment& assessment) {
@@ -144,28 +158,11 @@ void run_moving_loads(const std::vector<AxleTrain>& trains, int threads, const s
   }
 }
 
-LargestResponse largest_response(const AxleTrain& train, const ModalDeck& deck, double highest) {
-  LargestResponse largest;
-  largest.speed = highest;
-  for (const PassagePeaks& p : search_critical_speeds(deck, train, lowest_speed(highest), highest)) {
-    if (p.acceleration.value > largest.acceleration) {
-      largest.acceleration = p.acceleration.value;
-      largest.speed = p.speed;
-    }
-    largest.displacement = std::max(largest.displacement, p.displacement.value);
-    largest.end_rotation = std::max(largest.end_rotation, p.end_rotation.value);
-  }
-  return largest;
-}
-
-double governing_speed(const AxleTrain& train, const std::vector<DeckAssessment>& decks, double highest) {
-  LargestResponse worst;
-  worst.speed = highest;
-  for (const DeckAssessment& deck : decks) {
-    const LargestResponse here = largest_response(train, deck.deck, highest);
-    if (here.acceleration > worst.acceleration) worst = here;
-  }
-  return worst.speed;
+std::vector<LargestResponse> largest_responses(const AxleTrain& train, const std::vector<DeckAssessment>& decks,
+                                               double highest) {
+  std::vector<LargestResponse> responses;
+  for (const DeckAssessment& deck : decks) responses.push_back(largest_response(train, deck.deck, highest));
+  return responses;
 }
 
 }  // namespace railtab::vsi

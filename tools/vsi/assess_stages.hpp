@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "assessment.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
@@ -32,11 +33,9 @@ struct LargestResponse {
   double end_rotation = -1.0;  ///< [rad]
   double speed = 0.0;          ///< of the largest acceleration [m/s]
 };
-[[nodiscard]] LargestResponse largest_response(const AxleTrain& train, const ModalDeck& deck, double highest);
-
-/// The speed up to `highest` [m/s] at which a train as moving loads gives the largest acceleration of a deck.
-/// @pre check_decks()
-[[nodiscard]] double governing_speed(const AxleTrain& train, const std::vector<assess::DeckAssessment>& decks,
-                                     double highest);
+/// Of each deck. @pre check_decks()
+[[nodiscard]] std::vector<LargestResponse> largest_responses(const AxleTrain& train,
+                                                             const std::vector<assess::DeckAssessment>& decks,
+                                                             double highest);
 
 }  // namespace railtab::vsi

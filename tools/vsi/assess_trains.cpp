@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "assess_stages.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/base/text_lines.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
@@ -104,26 +103,27 @@ std::vector<AssessTrain> assess_trains(const SceneParameters& scene, const std::
   return trains;
 }
 
-std::vector<const AssessTrain*> governing_trains(const std::vector<AssessTrain>& trains,
-                                                 const std::vector<assess::DeckAssessment>& decks, double highest) {
-  std::vector<const AssessTrain*> runs;
+std::vector<GoverningTrain> governing_trains(const std::vector<AssessTrain>& trains,
+                                             const std::vector<assess::DeckAssessment>& decks, double highest) {
+  std::vector<GoverningTrain> runs;
   for (const AssessTrain& train : trains) {
-    if (train.scene) runs.push_back(&train);
+    if (train.scene) runs.push_back({&train, {}});
   }
   if (runs.size() == 1) return runs;
+  for (GoverningTrain& run : runs) run.responses = largest_responses(run.train->axles, decks, highest);
   std::vector<bool> governs(runs.size(), false);
-  for (const assess::DeckAssessment& deck : decks) {
-    std::vector<LargestResponse> responses;
-    for (const AssessTrain* train : runs) responses.push_back(largest_response(train->axles, deck.deck, highest));
+  for (std::size_t d = 0; d < decks.size(); ++d) {
     for (const auto member :
          {&LargestResponse::acceleration, &LargestResponse::displacement, &LargestResponse::end_rotation}) {
-      const auto largest = std::ranges::max_element(responses, {}, member) - responses.begin();
+      const auto largest =
+          std::ranges::max_element(runs, {}, [&](const GoverningTrain& run) { return run.responses[d].*member; }) -
+          runs.begin();
       governs[static_cast<std::size_t>(largest)] = true;
     }
   }
-  std::vector<const AssessTrain*> governing;
+  std::vector<GoverningTrain> governing;
   for (std::size_t t = 0; t < runs.size(); ++t) {
-    if (governs[t]) governing.push_back(runs[t]);
+    if (governs[t]) governing.push_back(std::move(runs[t]));
   }
   return governing;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "assess_stages.hpp"
 #include "assessment.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
 
@@ -27,10 +28,17 @@ struct AssessTrain {
                                                      const std::vector<std::string>& names,
                                                      const std::filesystem::path& folder);
 
+/// A train to run with contact.
+struct GoverningTrain {
+  const AssessTrain* train;
+  /// Largest response of each deck to it as moving forces; none where no other train was compared with it.
+  std::vector<LargestResponse> responses;
+};
+
 /// Of the trains of vehicles those whose moving forces give the largest acceleration, displacement or end rotation of a
 /// deck at speeds up to `highest` [m/s]; each once. @pre one of them is of vehicles
-[[nodiscard]] std::vector<const AssessTrain*> governing_trains(const std::vector<AssessTrain>& trains,
-                                                               const std::vector<assess::DeckAssessment>& decks,
-                                                               double highest);
+[[nodiscard]] std::vector<GoverningTrain> governing_trains(const std::vector<AssessTrain>& trains,
+                                                           const std::vector<assess::DeckAssessment>& decks,
+                                                           double highest);
 
 }  // namespace railtab::vsi

@@ -52,7 +52,7 @@ int fmu_command(const Arguments& arguments) {
   const std::string output = line.required("output");
   require_fitting_name(output, "-o", "an FMU", {".fmu"});
   require_writable_place(output, "-o");
-  const SceneParameters scene = read_scene(file);
+  const SceneParameters scene = read_scene(file, {}, SceneFiles::of_train_and_structure);
   require_no_input(output, {file});
   for (const std::filesystem::path& read : scene.files) require_no_input(output, {read});
   try {

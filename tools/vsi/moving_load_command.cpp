@@ -118,7 +118,7 @@ std::vector<ModalDeck> decks_of(const CommandLine& line, const DynamicModes& mod
     if (line.given(option)) throw input_error(fmt::format("--{}", option), "a scene too", "one of them");
   }
   const std::filesystem::path file = line.required("scene");
-  const SceneParameters scene = read_scene(file);
+  const SceneParameters scene = read_scene(file, {}, SceneFiles::of_train_and_structure);
   try {
     std::vector<ModalDeck> decks = decks_of_scene(scene, modes);
     if (!scene.spans.empty()) warn_of_frequencies(line, decks, "bridge.mass (per metre) and E Iy");

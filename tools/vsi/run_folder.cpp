@@ -129,22 +129,30 @@ std::string first_difference(const std::string& bound, const std::string& text, 
   for (int line = 1;; ++line) {
     const bool ends_there = !std::getline(there, before), ends_now = !std::getline(now, after);
     if (!ends_there && !ends_now && before == after) continue;
-    if (ends_there) return fmt::format("line {} is new: {}", line, railtab::quoted(after));
-    if (ends_now) return fmt::format("line {} is gone: {}", line, railtab::quoted(before));
+    const auto shown = [](const std::string& row) { return row.empty() ? "an empty line" : railtab::quoted(row); };
+    if (ends_there) return fmt::format("line {} is new: {}", line, shown(after));
+    if (ends_now) return fmt::format("line {} is gone: {}", line, shown(before));
     for (const fs::path& input : files) {
       const std::string label = checksum_mark(input);
       if (before.starts_with(label) && after.starts_with(label)) {
         return fmt::format("the contents of {} have changed", printable(input.string()));
       }
     }
-    return fmt::format("line {} was {} and is {}", line, railtab::quoted(before), railtab::quoted(after));
+    return fmt::format("line {} was {} and is {}", line, shown(before), shown(after));
   }
 }
 
 }  // namespace
 
-void check_same_scene(std::string text, const std::vector<fs::path>& files, const fs::path& folder) {
+void check_same_scene(const fs::path& scene, std::string text, const std::vector<fs::path>& files,
+                      const fs::path& folder) {
   const fs::path file = folder / "scene.toml";
+  std::error_code none;
+  if (fs::equivalent(scene, file, none)) {
+    throw input_error(fmt::format("-o {}", folder.string()),
+                      fmt::format("the scene itself, {}, in this folder", file.string()),
+                      "another folder: results come with a file scene.toml of their own");
+  }
   for (const fs::path& input : files) text += fmt::format("\n{}{}", checksum_mark(input), file_checksum(input));
   text += '\n';
   try {

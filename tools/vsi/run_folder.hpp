@@ -42,9 +42,10 @@ RunCount count_rows(const RunPool& pool, const std::vector<RunRow>& runs, std::s
 void print_warnings(std::string_view command, const std::vector<std::string>& warnings);
 
 /// A folder holds the runs of one scene and of the same contents of the files that it names, or is bound to them here
-/// by its file scene.toml. @throws InputError with the first difference
-void check_same_scene(std::string text, const std::vector<std::filesystem::path>& files,
-                      const std::filesystem::path& folder);
+/// by its file scene.toml. @param scene the file of the scene; text, files what it reads
+/// @throws InputError with the first difference, and where that file scene.toml is the scene itself
+void check_same_scene(const std::filesystem::path& scene, std::string text,
+                      const std::vector<std::filesystem::path>& files, const std::filesystem::path& folder);
 
 /// What processes left that were killed while they wrote: of finished runs too, which nothing is written of any more.
 void remove_abandoned_runs(const std::vector<RunRow>& runs, const std::vector<std::string>& others,

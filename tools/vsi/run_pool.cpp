@@ -360,10 +360,12 @@ void RunPool::say_end(const PooledRun& run, int code) {
 
 void make_output_folder(const fs::path& folder) {
   if (folder.empty()) throw input_error("-o", "an empty name", "the name of a folder");
-  if (fs::is_directory(folder)) return;
-  if (fs::exists(folder)) throw input_error("-o", folder.string() + ", which is a file", "a folder");
+  std::error_code rejected;
+  const fs::file_status there = fs::status(folder, rejected);
+  if (fs::is_directory(there)) return;
+  if (fs::exists(there)) throw input_error("-o", folder.string() + ", which is a file", "a folder");
   const fs::path parent = fs::absolute(folder / "").parent_path().parent_path();
-  if (!fs::is_directory(parent)) {
+  if (!fs::is_directory(parent, rejected)) {
     throw input_error("-o", fmt::format("no folder {}", parent.string()), "a new folder in an existing one");
   }
   std::error_code failure;

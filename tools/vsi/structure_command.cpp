@@ -121,7 +121,7 @@ int structure_command(const Arguments& arguments) {
   const int modes = static_cast<int>(line.whole_number("modes", 0, most_modes));
   const std::filesystem::path file = line.required("scene");
   if (line.given("output")) require_writable_place(line.text("output") + ".modes.csv", "-o");
-  const SceneParameters scene = read_scene(file);
+  const SceneParameters scene = read_scene(file, {}, SceneFiles::of_train_and_structure);
   const Found found = [&] {
     try {
       return summary_of(scene, modes);

@@ -101,7 +101,7 @@ int sweep_command(const Arguments& arguments) {
 
   make_output_folder(folder);
   remove_abandoned_runs(rows_of(all), {"scene.toml", "summary.csv"}, folder);
-  check_same_scene(scene.text, scene.files, folder);
+  check_same_scene(scene_file, scene.text, scene.files, folder);
   const auto processes = static_cast<std::size_t>(line.workers());
   RunPool sweep(scene_file, folder, {"vsi sweep", line.quiet() || line.json()});
   std::vector<PooledRun> runs;
