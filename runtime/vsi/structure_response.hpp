@@ -169,6 +169,9 @@ class StructureResponse {
   /// Matrices by sums and differences of the rails, for a division into sections.
   struct Divisible;
   void set_divisible(const StructureModel& structure, const DofRange& active);
+  /// The factor in sections of the active unknowns; null where its rounding would show.
+  [[nodiscard]] std::unique_ptr<SubstitutionFactor> accurate_sections(
+      const std::shared_ptr<const SectionLayout>& layout) const;
   void set_entries(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping);
 
   HhtScheme scheme_{};

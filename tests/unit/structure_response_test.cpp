@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -300,6 +301,28 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
     EXPECT_LT((in_sections.increment(motion, load) - expected).cwiseAbs().maxCoeff(),
               1e-7 * expected.cwiseAbs().maxCoeff())
         << "more than rounding L's entries to floats changes";
+  }
+}
+
+// Floats do where elements are as long as the deck is high; a hundred times shorter ones are factored with doubles.
+TEST(StructureResponse, ShortElementsInLongStepsAreNotRoundedToFloats) {
+  TrackParameters track;
+  track.length_before = track.length_after = 40.0;
+  BridgeParameters span;
+  for (const auto& [elements, time_step, divides] :
+       {std::tuple{32, 5e-4, true}, {100, 5e-4, true}, {400, 5e-4, false}, {100, 5e-3, false}, {1000, 5e-3, false}}) {
+    span.elements = elements;
+    const StructureModel structure = build_track_bridge(track, {span, span});
+    const HhtScheme scheme{.alpha = -0.05, .time_step = time_step};
+    const StructureResponse response(structure, scheme);
+    EXPECT_EQ(response.in_sections(), divides) << elements << " elements, " << time_step << " s";
+    StructureModel unlike = structure;
+    unlike.dof_line.clear();
+    const StructureResponse whole(unlike, scheme);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(structure.dofs());
+    load[structure.rail[0].dof[structure.rail[0].dof.size() / 2][2]] = 1e5;
+    const Eigen::VectorXd expected = whole.solve(load);
+    EXPECT_LT((response.solve(load) - expected).cwiseAbs().maxCoeff(), 1e-4 * expected.cwiseAbs().maxCoeff());
   }
 }
 
