@@ -190,6 +190,7 @@ void StudyRuns::bind_folder() const {
     }
   }
   check_same_scene(
+      plan_.scene_file,
       scene_.text + fmt::format("\n# vsi study: decks judged at all their nodes, acceleration low-passed at {} Hz",
                                 deck_cut_off_),
       files, options_.folder);
