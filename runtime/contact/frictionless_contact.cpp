@@ -38,11 +38,17 @@ std::optional<double> lowering_under_load(const ContactGeometry& geometry, const
     pose.z = touch.z + dz;
     return frictionless_force(geometry, pose, normal)[1] - load;
   };
+  // The force falls where a loaded part ends and patches go on: a long stride near the load would pass the first
+  // lowering that carries it. It grows by about the square of the lowering at most.
+  constexpr double shortest = 1.02, longest = 2.0, reached = 0.7;
   double low = 0.0, high = 1e-6, at_high = excess(high), at_low = -load;
   while (at_high < 0.0 && high < deepest_lowering) {
     low = high;
     at_low = at_high;
-    high = std::min(deepest_lowering, 2.0 * high);
+    const double share = (at_high + load) / load;
+    const bool may_fall = geometry.loaded() != nullptr && share > 0.0;
+    high *= may_fall ? std::clamp(std::sqrt(reached / share), shortest, longest) : longest;
+    high = std::min(deepest_lowering, high);
     at_high = excess(high);
   }
   if (at_high < 0.0) return std::nullopt;

@@ -28,8 +28,9 @@ inline constexpr double touch_rounding = 1e-13;
 [[nodiscard]] Vector3 frictionless_force(const ContactGeometry& geometry, const WheelsetPose& pose,
                                          const NormalContactModel& normal) noexcept;
 
-/// The lowering below first touch at which the wheel carries a vertical load [m], 0 to deepest_lowering; none where the
-/// contact does not carry it there.
+/// The least lowering below first touch at which the wheel carries a vertical load [m], 0 to deepest_lowering; none
+/// where the contact does not carry it there. Where the force of a loaded table falls, a peak above the load that is
+/// narrower than 2 % of the lowering is passed.
 /// @param touch the pose at first touch @param load above 0 [N]
 [[nodiscard]] std::optional<double> lowering_under_load(const ContactGeometry& geometry, const WheelsetPose& touch,
                                                         double load, const NormalContactModel& normal);

@@ -8,6 +8,7 @@ namespace railtab {
 /// moves vertically by a third at least of the largest displacement. Twist and lateral bending do not.
 struct BendingModes {
   int first = 0, third = 0;
+  int found = 0;  ///< how many there are, 3 at most
 };
 /// @param share of each mode: the largest vertical motion, mean over the width, over its largest displacement anywhere
 [[nodiscard]] BendingModes bending_modes(const Eigen::ArrayXd& share);

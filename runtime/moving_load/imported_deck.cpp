@@ -17,8 +17,8 @@
 namespace railtab {
 namespace {
 
-/// Vertical motion of the modes at x on the track's centre line, at the height of the deck's nodes.
-Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis, double x) {
+/// Vertical motion at x on the track's centre line, at the height of the deck's nodes; supports (-1) have no part.
+DofSum on_centre_line(const DeckFunction& deck, double x) {
   const std::optional<DeckAttachment> found = deck(x, 0.0, 0.0);
   if (!found) {
     throw input_error("structure.deck", fmt::format("no deck at x = {:.6g} m on the track's centre line", x),
@@ -26,10 +26,9 @@ Eigen::ArrayXd on_centre_line(const DeckFunction& deck, const ModalBasis& basis,
   }
   const Eigen::RowVectorXd row =
       found->rows.row(2) + found->arm.y() * found->rows.row(3) - found->arm.x() * found->rows.row(4);
-  Eigen::ArrayXd motion = Eigen::ArrayXd::Zero(basis.shape.cols());
+  DofSum motion;
   for (std::size_t k = 0; k < found->dof.size(); ++k) {
-    if (found->dof[k] >= 0)
-      motion += row[static_cast<Eigen::Index>(k)] * basis.shape.row(found->dof[k]).array().transpose();
+    motion.emplace_back(found->dof[k], row[static_cast<Eigen::Index>(k)]);
   }
   return motion;
 }
@@ -89,16 +88,45 @@ Eigen::ArrayXd bending_share(const FeStructure& structure, const std::vector<int
   return (anywhere > 0.0).select(largest / anywhere, 0.0);
 }
 
-/// Modes up to the cut-off and some beyond it, which the static deflection needs.
-ModalBasis enough_modes(const FeStructure& structure, const std::vector<int>& deck, const DynamicModes& wanted) {
+struct DeckBasis {
+  ModalBasis modes;
+  bool complete = false;  ///< all that the structure has
+};
+
+/// Modes up to the cut-off, which needs the third bending mode, and some beyond it.
+DeckBasis enough_modes(const FeStructure& structure, const std::vector<int>& deck, const DynamicModes& wanted) {
   constexpr int first_try = 20, most = 320;
   for (int count = std::max(first_try, 2 * wanted.count);; count *= 2) {
-    ModalBasis basis = lowest_modes(structure.stiffness, structure.mass, std::min(count, most));
+    const int asked = std::min(count, most);
+    ModalBasis basis = lowest_modes(structure.stiffness, structure.mass, asked);
     const auto found = static_cast<int>(basis.omega2.size());
-    if (found < count || count >= most) return basis;
+    const bool complete = found < asked || found == structure.dofs();
+    if (complete || asked == most) return {std::move(basis), complete};
     const BendingModes bending = bending_modes(bending_share(structure, deck, basis));
-    if (2 * count_dynamic_modes(basis.omega2.array().sqrt(), bending, wanted) <= found) return basis;
+    if (wanted.count == 0 && bending.found < 3) continue;
+    const int dynamic = count_dynamic_modes(basis.omega2.array().sqrt(), bending, wanted);
+    if (2 * dynamic <= found) return {std::move(basis), complete};
   }
+}
+
+/// Appends what the modes lack of the static deflection under the axles.
+void append_residual_shapes(const FeStructure& structure, const DeckFunction& line, const DeckExtent& extent,
+                            ModalBasis& basis) {
+  constexpr int intervals = 48;
+  constexpr double inside = 2e-6;  // [m]
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(structure.dofs(), intervals + 1);
+  for (int i = 0; i <= intervals; ++i) {
+    const double x = extent.begin + (extent.end - extent.begin) * i / intervals;
+    for (const auto& [row, share] : on_centre_line(line, std::clamp(x, extent.begin + inside, extent.end - inside))) {
+      if (row >= 0) forces(row, i) += share;
+    }
+  }
+  const Eigen::MatrixXd shapes = residual_shapes(structure.stiffness, basis, forces);
+  const Eigen::Index modes = basis.omega2.size();
+  basis.shape.conservativeResize(Eigen::NoChange, modes + shapes.cols());
+  basis.shape.rightCols(shapes.cols()) = shapes;
+  basis.omega2.conservativeResize(modes + shapes.cols());
+  basis.omega2.tail(shapes.cols()).setConstant(basis.omega2[modes - 1]);
 }
 
 /// The cubic through the values at 0, h/3, 2h/3 and h.
@@ -118,7 +146,7 @@ void set_line(const DeckFunction& deck, const ModalBasis& basis, double length, 
     std::array<Eigen::ArrayXd, 4> values;
     for (int k = 0; k < 4; ++k) {
       const double u = std::clamp(h * k / 3.0, inside, h - inside);
-      values[static_cast<std::size_t>(k)] = on_centre_line(deck, basis, result.start + h * e + u);
+      values[static_cast<std::size_t>(k)] = of_modes(on_centre_line(deck, result.start + h * e + u), basis).transpose();
     }
     result.knots.push_back(h * e);
     result.shape.push_back(through(values, h));
@@ -144,11 +172,18 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
                       "a longer one: see structure.units and structure.axes");
   }
   const DeckFunction line = deck_function(structure, nodes);
-  const ModalBasis basis =
-      by_modes ? ModalBasis{modal.shape, modal.omega.cwiseAbs2()} : enough_modes(structure, nodes, modes);
+  auto [basis, complete] = by_modes ? DeckBasis{{std::move(modal.shape), modal.omega.cwiseAbs2()}, false}
+                                    : enough_modes(structure, nodes, modes);
+  const BendingModes bending = bending_modes(bending_share(structure, nodes, basis));
   ModalDeck deck;
   deck.name = "structure";
   deck.start = begin;
+  deck.first_bending = bending.first;
+  deck.third_bending = bending.third;
+  deck.third_bending_unknown = bending.found < 3 && !complete;
+  deck.known_modes = static_cast<int>(basis.omega2.size());
+  deck.dynamic_modes = count_dynamic_modes(basis.omega2.array().sqrt(), bending, modes);
+  if (!by_modes) append_residual_shapes(structure, line, {begin, end}, basis);
   deck.omega = basis.omega2.array().sqrt();
   if (by_modes) {
     deck.damping = modal.damping;
@@ -157,10 +192,6 @@ ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& 
     deck.damping =
         (basis.shape.cwiseProduct(damping * basis.shape)).colwise().sum().transpose().array() / (2.0 * deck.omega);
   }
-  const BendingModes bending = bending_modes(bending_share(structure, nodes, basis));
-  deck.first_bending = bending.first;
-  deck.third_bending = bending.third;
-  deck.dynamic_modes = count_dynamic_modes(deck.omega, bending, modes);
   const double most_damped = deck.damping.head(deck.dynamic_modes).maxCoeff();
   if (most_damped >= 1.0) {
     throw input_error("structure", fmt::format("a mode with damping ratio {:.4g}", most_damped),

@@ -58,14 +58,20 @@ double ModalDeck::cut_off() const noexcept {
   return cut_off_frequency(frequency(first_bending), frequency(third_bending));
 }
 
+std::string doubtful_cut_off(const ModalDeck& deck) {
+  if (!deck.third_bending_unknown) return {};
+  return fmt::format(
+      "f3, the third bending mode of deck {}, is not among its {} modes up to {:.4g} Hz: accelerations are those of "
+      "modes up to {:.4g} Hz, while all up to the greatest of 30 Hz, 1.5 f1 and f3 are expected",
+      deck.name, deck.known_modes, deck.frequency(deck.known_modes - 1), deck.cut_off());
+}
+
 BendingModes bending_modes(const Eigen::ArrayXd& share) {
   constexpr double least = 1.0 / 3.0;
   BendingModes result;
-  int found = 0;
-  for (int mode = 0; mode < share.size() && found < 3; ++mode) {
+  for (int mode = 0; mode < share.size() && result.found < 3; ++mode) {
     if (!(share[mode] >= least)) continue;
-    ++found;
-    if (found == 1) result.first = mode;
+    if (++result.found == 1) result.first = mode;
     result.third = mode;
   }
   return result;
@@ -134,6 +140,7 @@ ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes
   add_torsion(span, sines);
   std::stable_sort(sines.begin(), sines.end(), [](const SineMode& a, const SineMode& b) { return a.omega < b.omega; });
   const auto count = static_cast<Eigen::Index>(sines.size());
+  deck.known_modes = static_cast<int>(count);
   Eigen::ArrayXd n(count), amplitude(count);
   deck.omega.resize(count);
   for (Eigen::Index mode = 0; mode < count; ++mode) {
@@ -145,7 +152,7 @@ ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes
     if (sine.bends && sine.half_waves == 3) deck.third_bending = static_cast<int>(mode);
   }
   deck.damping = Eigen::ArrayXd::Constant(count, span.damping_ratio);
-  deck.dynamic_modes = count_dynamic_modes(deck.omega, {deck.first_bending, deck.third_bending}, modes);
+  deck.dynamic_modes = count_dynamic_modes(deck.omega, {deck.first_bending, deck.third_bending, 3}, modes);
   const int of_shortest = 2 * static_cast<int>(n.maxCoeff());
   const int of_dynamic = static_cast<int>(n.head(deck.dynamic_modes).maxCoeff());
   const int elements = std::max(of_shortest, 16 * std::max(3, of_dynamic));

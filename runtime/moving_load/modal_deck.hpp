@@ -21,11 +21,15 @@ struct ModalDeck {
   double start = 0.0;         ///< place of x = 0 along the track [m]
   std::vector<double> knots;  ///< from 0 to the deck's length [m], rising
   std::vector<Cubics> shape;  ///< of each element, modes × 4: c_n0 … c_n3
-  Eigen::ArrayXd omega;       ///< circular natural frequencies, rising [rad/s]
-  Eigen::ArrayXd damping;     ///< ratios of critical, 0 <= ζ < 1
-  int first_bending = 0;      ///< number of the first mode that bends the deck (BendingModes)
-  int third_bending = 0;      ///< of the third, or the last of fewer
-  int dynamic_modes = 0;      ///< the first of them, that vibrate; the others deflect as at rest
+  /// Circular natural frequencies, rising [rad/s]. Shapes of residual flexibility beyond `known_modes` have that of the
+  /// last mode.
+  Eigen::ArrayXd omega;
+  Eigen::ArrayXd damping;              ///< ratios of critical, 0 <= ζ < 1
+  int first_bending = 0;               ///< number of the first mode that bends the deck (BendingModes)
+  int third_bending = 0;               ///< of the third, or the last of fewer
+  bool third_bending_unknown = false;  ///< fewer among the modes, which are not all that the deck has
+  int known_modes = 0;                 ///< the first of them, natural modes
+  int dynamic_modes = 0;               ///< the first of them, that vibrate; the others deflect as at rest
   /// Where the largest motions are sought: along the line first, evenly spaced, then places of an imported deck.
   std::vector<double> point_x;   ///< [m]
   Eigen::MatrixXd point_shape;   ///< points × modes [kg^-1/2]
@@ -43,6 +47,9 @@ struct ModalDeck {
   [[nodiscard]] Eigen::ArrayXd shape_at(double x, int derivative = 0) const;
 };
 
+/// A sentence where the cut-off does without the third bending mode because that is not known; else empty.
+[[nodiscard]] std::string doubtful_cut_off(const ModalDeck& deck);
+
 /// Which modes vibrate.
 struct DynamicModes {
   int count = 0;  ///< 0: all up to ModalDeck::cut_off()
@@ -57,7 +64,9 @@ struct DynamicModes {
 [[nodiscard]] ModalDeck simply_supported_deck(const BridgeParameters& span, const DynamicModes& modes = {});
 
 /// The deck of an imported bridge under forces on the track's centre line, between its first and last deck node; modes
-/// and their damping φᵀCφ/(2ω) from its matrices, the supports at rest. Sought are the line and all nodes of the deck.
+/// and their damping φᵀCφ/(2ω) from its matrices, the supports at rest. At rest the deck deflects by K⁻¹ under forces
+/// at 49 even places of the line, beyond the modes by shapes of residual flexibility; a structure by modes has none of
+/// these. Sought are the line and all nodes of the deck.
 /// @throws InputError, ComputationError
 [[nodiscard]] ModalDeck imported_deck(const ImportParameters& parameters, const DynamicModes& modes = {});
 

@@ -47,6 +47,12 @@ std::vector<double> piece_starts(const ModalDeck& deck, const AxleTrain& train) 
   return starts;
 }
 
+/// The cubic over a length h with values and slopes at both ends.
+ModalForce::Cubic hermite(double f0, double d0, double f1, double d1, double h) {
+  const double rise = (f1 - f0) / h;
+  return {f0, d0, (3.0 * rise - 2.0 * d0 - d1) / h, (d0 + d1 - 2.0 * rise) / (h * h)};
+}
+
 /// Adds P·φ_n and P·dφ_n/dx at x, by the element that holds `inside`, which is x but for rounding.
 void add_axle(const ModalDeck& deck, double x, double inside, double load, std::vector<double>& value,
               std::vector<double>& slope) {
@@ -67,26 +73,41 @@ ModalForce modal_force(const ModalDeck& deck, const AxleTrain& train) {
   ModalForce force;
   force.modes = deck.dynamic_modes;
   force.start = piece_starts(deck, train);
-  const auto modes = static_cast<std::size_t>(force.modes);
+  force.others = deck.modes() - deck.dynamic_modes;
+  const auto modes = static_cast<std::size_t>(force.modes), all = static_cast<std::size_t>(deck.modes());
   force.cubic.reserve(force.pieces() * modes);
+  force.other.reserve(force.pieces() * (all - modes));
+  force.other_bound.assign(force.pieces(), 0.0);
+  force.other_turn.assign(force.pieces(), {});
+  const std::array<Eigen::ArrayXd, 2> end_slope{deck.shape_at(0.0, 1), deck.shape_at(deck.length(), 1)};
   std::vector<double> f0, d0, f1, d1;  // values and slopes at both ends of a piece
   std::size_t first = 0, end = 0;      // axles that have not left and that have come on, in the middle of the piece
   for (std::size_t p = 0; p < force.pieces(); ++p) {
     const double a = force.start[p], b = force.start[p + 1], h = b - a, middle = 0.5 * (a + b);
     while (first < train.behind.size() && middle - train.behind[first] > deck.length()) ++first;
     while (end < train.behind.size() && middle - train.behind[end] > 0.0) ++end;
-    for (std::vector<double>* sum : {&f0, &d0, &f1, &d1}) sum->assign(modes, 0.0);
+    for (std::vector<double>* sum : {&f0, &d0, &f1, &d1}) sum->assign(all, 0.0);
     constexpr double inside = 1e-6;
     for (std::size_t k = first; k < end; ++k) {
       const double behind = train.behind[k];
       add_axle(deck, a - behind, a - behind + inside * h, train.load[k], f0, d0);
       add_axle(deck, b - behind, b - behind - inside * h, train.load[k], f1, d1);
     }
-    for (std::size_t n = 0; n < modes; ++n) {
-      const double rise = (f1[n] - f0[n]) / h;
-      force.cubic.push_back(
-          {f0[n], d0[n], (3.0 * rise - 2.0 * d0[n] - d1[n]) / h, (d0[n] + d1[n] - 2.0 * rise) / (h * h)});
+    for (std::size_t n = 0; n < modes; ++n) force.cubic.push_back(hermite(f0[n], d0[n], f1[n], d1[n], h));
+    double bound0 = 0.0, bound1 = 0.0;
+    for (std::size_t n = modes; n < all; ++n) {
+      const auto row = static_cast<Eigen::Index>(n);
+      const double flexibility = 1.0 / (deck.omega[row] * deck.omega[row]);
+      ModalForce::Cubic q = hermite(f0[n], d0[n], f1[n], d1[n], h);
+      for (std::size_t j = 0; j < q.size(); ++j) {
+        q[j] *= flexibility;
+        for (std::size_t e = 0; e < 2; ++e) force.other_turn[p][e][j] += end_slope[e][row] * q[j];
+      }
+      force.other.push_back(q);
+      bound0 += std::abs(f0[n]) * flexibility * deck.largest_shape[row];
+      bound1 += std::abs(f1[n]) * flexibility * deck.largest_shape[row];
     }
+    force.other_bound[p] = std::max(bound0, bound1);
   }
   return force;
 }

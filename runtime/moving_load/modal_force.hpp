@@ -17,6 +17,11 @@ struct ModalForce {
   int modes = 0;              ///< the deck's dynamic ones
   std::vector<double> start;  ///< of each piece [m], and the end of the last one
   std::vector<Cubic> cubic;   ///< [piece·modes + mode]: F = Σ c_j (s − start)^j [N kg^-1/2]
+  /// What the deck's other modes do without inertia, likewise:
+  int others = 0;
+  std::vector<Cubic> other;                      ///< [piece·others + mode]: q = F/ω² [m kg^1/2]
+  std::vector<double> other_bound;               ///< of each piece: Σ |q| times the mode's largest shape [m]
+  std::vector<std::array<Cubic, 2>> other_turn;  ///< of each piece: ∂w/∂x at x = 0 and at the deck's length
   [[nodiscard]] std::size_t pieces() const noexcept { return start.size() - 1; }
 };
 [[nodiscard]] ModalForce modal_force(const ModalDeck& deck, const AxleTrain& train);

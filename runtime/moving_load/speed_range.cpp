@@ -53,7 +53,7 @@ std::vector<TrainResponse> train_responses(const ModalDeck& deck, const std::vec
       if (refined) {
         responses[t].passages = search_critical_speeds(deck, trains[t], range.low, range.high);
       } else {
-        responses[t].passages[i] = train_passage(deck, trains[t], forces[t], range.speeds[i]);
+        responses[t].passages[i] = train_passage(deck, forces[t], range.speeds[i]);
       }
     }
     report();

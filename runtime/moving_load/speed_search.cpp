@@ -100,7 +100,7 @@ std::vector<PassagePeaks> search_critical_speeds(const ModalDeck& deck, const Ax
   const Estimate acceleration(curve.speed, curve.acceleration, &PassagePeaks::acceleration);
   const Estimate displacement(curve.speed, curve.displacement, &PassagePeaks::displacement);
   Found found;
-  const auto evaluate = [&](double speed) { found.emplace(speed, train_passage(deck, train, force, speed)); };
+  const auto evaluate = [&](double speed) { found.emplace(speed, train_passage(deck, force, speed)); };
   for (int i = 0; i < even; ++i) evaluate(low + (high - low) * i / (even - 1));
   for (const double speed : highest_peaks(curve.speed, curve.acceleration, 3)) evaluate(speed);
   for (const double speed : highest_peaks(curve.speed, curve.displacement, 2)) evaluate(speed);

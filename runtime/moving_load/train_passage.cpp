@@ -16,6 +16,16 @@ constexpr double samples_per_period = 16.0, samples_with_jumps = 64.0;
 /// rises by (π/16)²/2, 2 %.
 constexpr double near_peak = 0.97;
 
+/// A piece of ModalForce: forces on the modes that vibrate, and what the others do without inertia.
+struct Piece {
+  const ModalForce::Cubic* force;
+  const ModalForce::Cubic* other = nullptr;  // none after the last axle
+  double other_bound = 0.0;
+  std::array<ModalForce::Cubic, 2> other_turn{};
+};
+
+double value_at(const ModalForce::Cubic& c, double s) noexcept { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
+
 /// Deck displacement (order 0) or acceleration (order 2): the largest amount so far and the motion at it.
 struct Candidate {
   explicit Candidate(int derivative) : order(derivative) {}
@@ -23,6 +33,7 @@ struct Candidate {
   double value = 0.0, start = 0.0, tau = 0.0;  // start [s] of the piece
   int point = 0;
   std::vector<ModalMotion> motion;
+  const ModalForce::Cubic* other = nullptr;  // of the other modes, with a displacement
 };
 
 class Passage {
@@ -32,6 +43,7 @@ class Passage {
     q_.setZero(modes_);
     dq_.setZero(modes_);
     a_.setZero(modes_);
+    other_q_.setZero(deck.modes() - modes_);
     factor_.resize(static_cast<std::size_t>(modes_));
     jumps_ = has_free_end(deck);
     for (std::size_t e = 0; e < ends; ++e) {
@@ -41,15 +53,15 @@ class Passage {
   }
 
   /// Through one piece, from `start` on and `duration` [s] long.
-  void advance(const ModalForce::Cubic* force, double start, double duration) {
+  void advance(const Piece& piece, double start, double duration) {
     const int steps = std::max(1, static_cast<int>(std::ceil(duration / longest_step_)));
     const double step = duration / steps;
     for (int n = 0; n < modes_; ++n) {
-      motion_[index(n)].begin(q_[n], dq_[n], force[n], speed_);
+      motion_[index(n)].begin(q_[n], dq_[n], piece.force[n], speed_);
       factor_[index(n)] = motion_[index(n)].factor(step);
       a_[n] = motion_[index(n)].acceleration();
     }
-    if (jumps_) look(a_, start, 0.0, acceleration_);
+    if (jumps_) look(a_, nullptr, 0.0, start, 0.0, acceleration_);
     for (int i = 1; i <= steps; ++i) {
       const double tau = step * i;
       double bound_w = 0.0, bound_a = 0.0;
@@ -61,9 +73,11 @@ class Passage {
         bound_w += std::abs(q_[n]) * deck_.largest_shape[n];
         bound_a += std::abs(a_[n]) * deck_.largest_shape[n];
       }
-      look_at_ends(start + tau);
-      if (bound_w > near_peak * displacement_.value) look(q_, start, tau, displacement_);
-      if (bound_a > near_peak * acceleration_.value) look(a_, start, tau, acceleration_);
+      look_at_ends(piece, start, tau);
+      if (bound_w + piece.other_bound > near_peak * displacement_.value) {
+        look(q_, piece.other, piece.other_bound, start, tau, displacement_);
+      }
+      if (bound_a > near_peak * acceleration_.value) look(a_, nullptr, 0.0, start, tau, acceleration_);
     }
     for (int n = 0; n < modes_; ++n) dq_[n] = motion_[index(n)].velocity();
   }
@@ -80,36 +94,52 @@ class Passage {
     return w <= displacement_.value && a <= acceleration_.value && r <= end_rotation_.value;
   }
 
-  [[nodiscard]] DeckPeak acceleration() const { return top(acceleration_, nullptr); }
-  [[nodiscard]] DeckPeak displacement(const AxleTrain& train) const { return top(displacement_, &train); }
-  /// With what the modes beyond the dynamic ones add at that time.
-  [[nodiscard]] DeckPeak end_rotation(const AxleTrain& train) const {
-    const int others = deck_.modes() - modes_;
-    if (others == 0 || end_rotation_.value == 0.0) return end_rotation_;
-    const Eigen::ArrayXd q = modal_force_at(deck_, train, speed_ * end_rotation_.time) / deck_.omega.square();
-    const double added = (q * deck_.shape_at(end_rotation_.x, 1)).tail(others).sum();
-    return {std::abs(std::copysign(end_rotation_.value, end_sign_) + added), end_rotation_.x, end_rotation_.time};
-  }
+  [[nodiscard]] DeckPeak acceleration() const { return top(acceleration_); }
+  [[nodiscard]] DeckPeak displacement() const { return top(displacement_); }
+  [[nodiscard]] const DeckPeak& end_rotation() const { return end_rotation_; }
 
  private:
   static std::size_t index(int n) { return static_cast<std::size_t>(n); }
 
-  void look_at_ends(double time) {
+  void look_at_ends(const Piece& piece, double start, double tau) {
     for (std::size_t e = 0; e < ends; ++e) {
-      const double rotation = end_slope_[e].dot(q_);
-      if (!(std::abs(rotation) > end_rotation_.value)) continue;
-      end_rotation_ = {std::abs(rotation), e == 0 ? 0.0 : deck_.length(), time};
-      end_sign_ = rotation;
+      const double rotation = std::abs(end_slope_[e].dot(q_) + value_at(piece.other_turn[e], speed_ * tau));
+      if (rotation > end_rotation_.value) end_rotation_ = {rotation, e == 0 ? 0.0 : deck_.length(), start + tau};
     }
   }
 
+  /// Adds what the other modes do at points where the sum may come near to the candidate.
+  void add_others(const ModalForce::Cubic* other, double bound, double tau, const Candidate& best) {
+    const double least = near_peak * best.value - bound;
+    if (!(at_points_.cwiseAbs().maxCoeff() > least)) return;
+    for (Eigen::Index k = 0; k < other_q_.size(); ++k) other_q_[k] = value_at(other[k], speed_ * tau);
+    for (Eigen::Index i = 0; i < at_points_.size(); ++i) {
+      if (!(std::abs(at_points_[i]) > least)) continue;
+      at_points_[i] += deck_.point_shape.row(i).tail(other_q_.size()).dot(other_q_);
+    }
+  }
+
+  /// q and its first two derivatives by time of a mode without inertia.
+  [[nodiscard]] std::array<double, 3> other_motion(const ModalForce::Cubic& c, double tau) const noexcept {
+    const double s = speed_ * tau;
+    return {value_at(c, s), speed_ * (c[1] + s * (2.0 * c[2] + 3.0 * s * c[3])),
+            speed_ * speed_ * (2.0 * c[2] + 6.0 * s * c[3])};
+  }
+
   /// Looks at all points for a motion higher than the candidate, by a step of Newton's to the top beside the sample.
-  void look(const Eigen::VectorXd& mode_values, double start, double tau, Candidate& best) {
+  /// @param other of the other modes, their sum nowhere above `bound`; nullptr: none
+  void look(const Eigen::VectorXd& mode_values, const ModalForce::Cubic* other, double bound, double start, double tau,
+            Candidate& best) {
     at_points_.noalias() = deck_.point_shape.leftCols(modes_) * mode_values;
+    if (other) add_others(other, bound, tau, best);
     Eigen::Index point = 0;
     const double sample = at_points_.cwiseAbs().maxCoeff(&point);
     if (!(sample > near_peak * best.value)) return;
     double u[3] = {0.0, 0.0, 0.0};
+    for (Eigen::Index k = 0; other && k < other_q_.size(); ++k) {
+      const std::array<double, 3> q = other_motion(other[k], tau);
+      for (std::size_t j = 0; j < 3; ++j) u[j] += deck_.point_shape(point, modes_ + k) * q[j];
+    }
     for (int n = 0; n < modes_; ++n) {
       const std::array<double, 5> q = motion_[index(n)].derivatives(0.0);
       for (int k = 0; k < 3; ++k) u[k] += deck_.point_shape(point, n) * q[index(best.order + k)];
@@ -122,6 +152,7 @@ class Passage {
     best.tau = tau;
     best.point = static_cast<int>(point);
     best.motion = motion_;
+    best.other = other;
   }
 
   /// The candidate's motion u and its derivatives: ∂u/∂t, ∂²u/∂t², ∂u/∂x, ∂²u/∂x².
@@ -141,6 +172,15 @@ class Passage {
       sum.x += on_line ? slope[n] * q[index(best.order)] : 0.0;
       sum.xx += bend[n] * q[index(best.order)];
     }
+    for (Eigen::Index k = 0; best.other && k < other_q_.size(); ++k) {
+      const Eigen::Index n = modes_ + k;
+      const std::array<double, 3> q = other_motion(best.other[k], best.tau + ahead);
+      sum.u += phi[n] * q[0];
+      sum.t += phi[n] * q[1];
+      sum.tt += phi[n] * q[2];
+      sum.x += on_line ? slope[n] * q[0] : 0.0;
+      sum.xx += bend[n] * q[0];
+    }
     return sum;
   }
 
@@ -150,12 +190,13 @@ class Passage {
   }
 
   /// Newton iteration in time and place in turn, within a step and an interval about the sample.
-  [[nodiscard]] DeckPeak top(const Candidate& best, const AxleTrain* train) const {
+  [[nodiscard]] DeckPeak top(const Candidate& best) const {
     if (best.motion.empty()) return {};
     constexpr int rounds = 6;
     const double x0 = deck_.point_x[index(best.point)], interval = deck_.length() / (deck_.points_on_line - 1);
     double ahead = 0.0, x = x0;
-    Local at = local(best, ahead, x);
+    const Local sample = local(best, ahead, x);
+    Local at = sample;
     for (int i = 0; i < rounds; ++i) {
       if (!jumps_ && at.u * at.tt < 0.0) ahead = std::clamp(ahead - at.t / at.tt, -longest_step_, longest_step_);
       at = local(best, ahead, x);
@@ -164,16 +205,8 @@ class Passage {
       }
       at = local(best, ahead, x);
     }
-    const double time = best.start + best.tau + ahead;
-    return {std::abs(at.u + (train ? without_inertia(*train, speed_ * time, best, x) : 0.0)), x, time};
-  }
-
-  /// What the modes beyond the dynamic ones add to the displacement.
-  [[nodiscard]] double without_inertia(const AxleTrain& train, double s, const Candidate& best, double x) const {
-    const int others = deck_.modes() - modes_;
-    if (others == 0) return 0.0;
-    const Eigen::ArrayXd q = modal_force_at(deck_, train, s) / deck_.omega.square();
-    return (q * line_or_point(best, x)).tail(others).sum();
+    if (std::abs(sample.u) > std::abs(at.u)) return {std::abs(sample.u), x0, best.start + best.tau};
+    return {std::abs(at.u), x, best.start + best.tau + ahead};
   }
 
   const ModalDeck& deck_;
@@ -182,29 +215,30 @@ class Passage {
   int modes_;
   std::vector<ModalMotion> motion_;
   std::vector<std::complex<double>> factor_;
-  Eigen::VectorXd q_, dq_, a_, at_points_;
+  Eigen::VectorXd q_, dq_, a_, other_q_, at_points_;
   Candidate displacement_{0}, acceleration_{2};
   static constexpr std::size_t ends = 2;
   std::array<Eigen::VectorXd, ends> end_slope_;  // of the modes that vibrate, at x = 0 and at the deck's length
   DeckPeak end_rotation_;
-  double end_sign_ = 1.0;
 };
 
 }  // namespace
 
-PassagePeaks train_passage(const ModalDeck& deck, const AxleTrain& train, const ModalForce& force, double speed) {
+PassagePeaks train_passage(const ModalDeck& deck, const ModalForce& force, double speed) {
   Passage passage(deck, speed);
-  const auto modes = static_cast<std::size_t>(force.modes);
+  const auto modes = static_cast<std::size_t>(force.modes), others = static_cast<std::size_t>(force.others);
   for (std::size_t p = 0; p < force.pieces(); ++p) {
-    passage.advance(&force.cubic[p * modes], force.start[p] / speed, (force.start[p + 1] - force.start[p]) / speed);
+    passage.advance(
+        {&force.cubic[p * modes], force.other.data() + p * others, force.other_bound[p], force.other_turn[p]},
+        force.start[p] / speed, (force.start[p + 1] - force.start[p]) / speed);
   }
   constexpr int most_periods = 50;  // of the first mode: without damping the envelope may never fall
   const std::vector<ModalForce::Cubic> none(modes, {0.0, 0.0, 0.0, 0.0});
   const double period = 2.0 * pi / deck.omega[0];
   for (int i = 0; i < most_periods && !passage.decided(); ++i) {
-    passage.advance(none.data(), force.start.back() / speed + i * period, period);
+    passage.advance({none.data()}, force.start.back() / speed + i * period, period);
   }
-  return {speed, passage.acceleration(), passage.displacement(train), passage.end_rotation(train)};
+  return {speed, passage.acceleration(), passage.displacement(), passage.end_rotation()};
 }
 
 }  // namespace railtab

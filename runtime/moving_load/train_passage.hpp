@@ -15,7 +15,7 @@ struct DeckPeak {
 struct PassagePeaks {
   double speed = 0.0;     ///< [m/s]
   DeckPeak acceleration;  ///< of the modes that vibrate, without filter
-  DeckPeak displacement;  ///< with what the other modes add without inertia
+  DeckPeak displacement;  ///< of all modes, those that do not vibrate without inertia
   DeckPeak end_rotation;  ///< of the line's ends about the lateral axis [rad], likewise; of the samples
 };
 
@@ -28,8 +28,7 @@ struct PassagePeaks {
 /// of 64 samples in the shortest period.) After the last axle the vibration is followed until its envelope is below the
 /// peaks found, for 50 periods of the first mode at most. Cost: pieces × modes exponentials, and the shapes at all
 /// points where the modes' amplitudes could exceed the peak.
-/// @param force that of this deck and train @pre speed > 0 [m/s]
-[[nodiscard]] PassagePeaks train_passage(const ModalDeck& deck, const AxleTrain& train, const ModalForce& force,
-                                         double speed);
+/// @param force that of the train on this deck @pre speed > 0 [m/s]
+[[nodiscard]] PassagePeaks train_passage(const ModalDeck& deck, const ModalForce& force, double speed);
 
 }  // namespace railtab

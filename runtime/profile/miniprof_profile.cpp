@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "railtab/runtime/base/constants.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -13,6 +15,9 @@
 namespace railtab {
 
 namespace {
+
+constexpr std::array<std::string_view, 6> header_keys{"ColumnDef", "XOffset", "Xoffset",
+                                                      "YOffset",   "Yoffset", "XYPoints"};
 
 /// The entries of the header that are used.
 struct MiniprofHeader {
@@ -40,7 +45,6 @@ void set_columns(MiniprofHeader& header, std::string_view value, const std::stri
 }
 
 void MiniprofHeader::set(std::string_view key, std::string_view value, const std::string& place) {
-  if (value.empty()) return;
   const auto value_of = [&] { return number(value, place, fmt::format("a number for {}", key)); };
   if (key == "ColumnDef") set_columns(*this, value, place);
   if (key == "XOffset" || key == "Xoffset") x_offset = value_of();
@@ -74,7 +78,11 @@ ProfilePoints read_miniprof(std::istream& in, const std::string& file, ProfileKi
       if (!outline.points.empty()) {
         throw input_error(text.place(), fmt::format("\"{}\" after the first point", content), "a point");
       }
-      header.set(trimmed(content.substr(0, equals)), trimmed(content.substr(equals + 1)), text.place());
+      const std::string_view key = trimmed(content.substr(0, equals)), value = trimmed(content.substr(equals + 1));
+      if (value.empty()) continue;
+      header.set(key, value, text.place());
+      if (std::string note = note_of_case(text, key, header_keys); !note.empty())
+        outline.notes.push_back(std::move(note));
       continue;
     }
     outline.points.push_back(point_of(header, content, text));

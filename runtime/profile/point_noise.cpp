@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace railtab {
@@ -35,27 +36,52 @@ double relative_distance(const ProfileKnots& k, std::size_t i) {
   return std::abs(ty * z - tz * y) / (std::hypot(ty, tz) * std::sqrt(variance));
 }
 
+/// Of the distances from `begin` to before `end`, the first of which is that of knot 2.
+PointNoise noise_of(const ProfileKnots& knots, const std::vector<double>& distances, std::size_t begin,
+                    std::size_t end) {
+  constexpr double median_of_normal = 0.6745;  // of the amount, in standard deviations
+  std::vector<double> spacings;
+  for (std::size_t i = begin; i < end + 3; ++i) spacings.push_back(knots.s[i + 1] - knots.s[i]);
+  const auto at = [&](std::size_t i) { return distances.begin() + static_cast<std::ptrdiff_t>(i); };
+  const double deviation = median({at(begin), at(end)}) / median_of_normal, spacing = median(std::move(spacings));
+  return {deviation, std::sqrt(6.0) * deviation / (spacing * spacing), deviation, knots.y[begin], knots.y[end + 3]};
+}
+
 }  // namespace
 
 PointNoise point_noise(const ProfileKnots& knots) {
-  constexpr std::size_t fewest = 9;
-  constexpr double median_of_normal = 0.6745;  // of the amount, in standard deviations
+  constexpr std::size_t fewest = 9, stretch = 25;
+  // The largest of many medians is above that of all points, and coarse points of a flange are not on a cubic.
+  constexpr double largest_of_stretch = 2.0 * largest_noise_curvature;
   const std::size_t n = knots.s.size();
   if (n < fewest) return {};
-  std::vector<double> distances, spacings;
+  std::vector<double> distances;
   for (std::size_t i = 2; i + 2 < n; ++i) distances.push_back(relative_distance(knots, i));
-  for (std::size_t i = 1; i < n; ++i) spacings.push_back(knots.s[i] - knots.s[i - 1]);
-  const double deviation = median(std::move(distances)) / median_of_normal, spacing = median(std::move(spacings));
-  return {deviation, std::sqrt(6.0) * deviation / (spacing * spacing)};
+  PointNoise of_all = noise_of(knots, distances, 0, distances.size());
+  of_all.y_begin = of_all.y_end = 0.0;
+  if (of_all.curvature > largest_noise_curvature) return of_all;
+  PointNoise most;
+  double squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i + stretch <= distances.size(); ++i) {
+    const PointNoise here = noise_of(knots, distances, i, i + stretch);
+    if (here.curvature > most.curvature) most = here;
+    squares += here.deviation * here.deviation;
+    count += 1.0;
+  }
+  if (most.curvature <= largest_of_stretch) return of_all;
+  most.smoothing = std::sqrt(squares / count);
+  return most;
 }
 
 std::string noise_warning(const std::string& name, const PointNoise& noise) {
-  constexpr double of_rail_head = 3.0;  // [1/m]: the crown of 60E1, beside which such bumps are contacts of their own
-  if (noise.curvature <= of_rail_head) return {};
+  if (noise.curvature <= largest_noise_curvature) return {};
+  const std::string stretch = noise.y_begin == noise.y_end ? std::string()
+                                                           : fmt::format(" from y = {:.3g} to {:.3g} mm",
+                                                                         1e3 * noise.y_begin, 1e3 * noise.y_end);
   return fmt::format(
-      "the points of {} scatter by about {:.2g} um, and the curvature of the curve through them by {:.2g} 1/m, more "
+      "the points of {}{} scatter by about {:.2g} um, and the curvature of the curve through them by {:.2g} 1/m, more "
       "than the {:g} 1/m of a rail head: contacts jump from bump to bump",
-      name, 1e6 * noise.deviation, noise.curvature, of_rail_head);
+      name, stretch, 1e6 * noise.deviation, noise.curvature, largest_noise_curvature);
 }
 
 }  // namespace railtab

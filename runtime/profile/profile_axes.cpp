@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 
 #include "railtab/runtime/base/constants.hpp"
@@ -29,6 +30,43 @@ std::size_t top_of(const std::vector<OutlinePoint>& points) {
   return static_cast<std::size_t>(std::min_element(points.begin(), points.end(), higher) - points.begin());
 }
 
+/// The first point of a range after which the outline is not steeper than 75 degrees over a millimetre: beyond the face
+/// of a rim at its beginning, which may be higher than the flange.
+template <class Point>
+Point end_of_face(Point begin, Point end) {
+  constexpr double length = 1 * mm;  // far more than points scatter by
+  constexpr double tan75 = 3.7320508075688772;
+  for (; begin != end; ++begin) {
+    const auto next = std::find_if(
+        begin, end, [&](const OutlinePoint& p) { return std::hypot(p.y - begin->y, p.z - begin->z) >= length; });
+    if (next == end || std::abs(next->z - begin->z) < tan75 * std::abs(next->y - begin->y)) break;
+  }
+  return begin;
+}
+
+bool deeper(const OutlinePoint& a, const OutlinePoint& b) { return std::abs(a.z) < std::abs(b.z); }
+
+/// The deepest point between the faces of the rim.
+OutlinePoint flange_tip(const std::vector<OutlinePoint>& points) {
+  const auto begin = end_of_face(points.begin(), points.end());
+  const auto end = end_of_face(points.rbegin(), std::make_reverse_iterator(begin)).base();
+  return begin == end ? OutlinePoint{} : *std::max_element(begin, end, deeper);
+}
+
+/// The field side of a wheel rises, or has the lip of a hollow tread.
+/// @param down 1 or -1: where z points
+void reject_rail(const std::string& file, const std::vector<OutlinePoint>& points, double down) {
+  constexpr double lip = 12 * mm;
+  const auto higher = [&](const auto& a, const auto& b) { return down * a.z < down * b.z; };
+  const double top = std::min_element(points.begin(), points.end(), higher)->z;
+  const double inner = down * (points.front().z - top), outer = down * (points.back().z - top);
+  if (std::min(inner, outer) <= lip) return;
+  throw input_error(file,
+                    fmt::format("a profile whose sides go down by {:.3g} mm and {:.3g} mm, as those of a rail do",
+                                inner / mm, outer / mm),
+                    "a wheel profile, with a flange on one side; are wheel and rail exchanged?");
+}
+
 /// The axes cannot be told from the numbers alone, but a flange shows where z and y point.
 void orient_wheel(const std::string& file, ProfilePoints& outline) {
   std::vector<OutlinePoint>& points = outline.points;
@@ -37,11 +75,12 @@ void orient_wheel(const std::string& file, ProfilePoints& outline) {
                       fmt::format("a wheel profile from y = {:.6g} m to {:.6g} m", points.front().y, points.back().y),
                       "one around the tape circle at y = 0");
   }
-  const auto deeper = [](const auto& a, const auto& b) { return std::abs(a.z) < std::abs(b.z); };
-  const OutlinePoint tip = *std::max_element(points.begin(), points.end(), deeper);
+  const OutlinePoint tip = flange_tip(points);
   // A chamfer or a worn tread rises some millimetres, only a flange is this high.
   constexpr double flange = 15 * mm;
   if (std::abs(tip.z) < flange) {
+    // The sides of a rail are as steep as the faces of a rim.
+    reject_rail(file, points, std::max_element(points.begin(), points.end(), deeper)->z < 0.0 ? -1.0 : 1.0);
     outline.notes.push_back(
         fmt::format("{}: no flange, {:.3g} mm from the tread at most: no flange contact will be found", file,
                     std::abs(tip.z) / mm));
@@ -51,15 +90,7 @@ void orient_wheel(const std::string& file, ProfilePoints& outline) {
     mirror_z(outline);
     outline.notes.push_back(file + ": z mirrored, since the flange points up");
   }
-  // The field side of a wheel rises, or has the lip of a hollow tread.
-  constexpr double lip = 12 * mm;
-  const double top = points[top_of(points)].z, inner = points.front().z - top, outer = points.back().z - top;
-  if (std::min(inner, outer) > lip) {
-    throw input_error(file,
-                      fmt::format("a profile whose sides go down by {:.3g} mm and {:.3g} mm, as those of a rail do",
-                                  inner / mm, outer / mm),
-                      "a wheel profile, with a flange on one side; are wheel and rail exchanged?");
-  }
+  reject_rail(file, points, 1.0);
   if (tip.y > 0.0) {
     mirror_y(outline);
     outline.notes.push_back(file + ": y mirrored, since the flange lies at y > 0");
@@ -108,6 +139,50 @@ void note_lean(const std::string& file, ProfilePoints& outline) {
   }
 }
 
+struct Circle {
+  double y, z, radius;
+};
+
+/// The circle with the least sum of squares of (distance from the centre)² - radius²: exact for points on a circle.
+std::optional<Circle> circle_through(const OutlinePoint* begin, const OutlinePoint* end) {
+  const auto count = static_cast<double>(end - begin);
+  double mean_y = 0.0, mean_z = 0.0;
+  for (const OutlinePoint* p = begin; p != end; ++p) {
+    mean_y += p->y / count;
+    mean_z += p->z / count;
+  }
+  double yy = 0.0, yz = 0.0, zz = 0.0, y_square = 0.0, z_square = 0.0;
+  for (const OutlinePoint* p = begin; p != end; ++p) {
+    const double y = p->y - mean_y, z = p->z - mean_z, square = y * y + z * z;
+    yy += y * y;
+    yz += y * z;
+    zz += z * z;
+    y_square += 0.5 * y * square;
+    z_square += 0.5 * z * square;
+  }
+  const double determinant = yy * zz - yz * yz;
+  if (!(determinant > 0.0)) return std::nullopt;
+  const double y = (zz * y_square - yz * z_square) / determinant;
+  const double z = (yy * z_square - yz * y_square) / determinant;
+  return Circle{mean_y + y, mean_z + z, std::sqrt(y * y + z * z + (yy + zz) / count)};
+}
+
+/// The circle of the gauge corner where the outline ends in it.
+std::optional<Circle> gauge_corner(const std::vector<OutlinePoint>& points) {
+  constexpr double length = 3 * mm;
+  constexpr std::ptrdiff_t fewest = 6;  // points whose scatter evens out
+  constexpr double smallest = 8 * mm, largest = 25 * mm;
+  const OutlinePoint& end = points.front();
+  const auto inner = std::find_if(points.begin(), points.end(),
+                                  [&](const OutlinePoint& p) { return std::hypot(p.y - end.y, p.z - end.z) > length; });
+  if (inner - points.begin() < fewest) return std::nullopt;
+  const auto corner = circle_through(points.data(), points.data() + (inner - points.begin()));
+  if (!corner || corner->radius < smallest || corner->radius > largest) return std::nullopt;
+  const double above = corner->z - end.z;  // of the end over the centre, less than half the radius at 60 degrees
+  if (!(corner->y > end.y && above > 0.0 && above < 0.5 * corner->radius)) return std::nullopt;
+  return corner;
+}
+
 /// Continues a gauge face that was not measured deep enough.
 void extend_gauge_face(const std::string& file, ProfilePoints& outline) {
   constexpr double least = 10 * mm;
@@ -131,13 +206,19 @@ void extend_gauge_face(const std::string& file, ProfilePoints& outline) {
   const double slope = 1.5 * outer - 0.5 * inner;
   constexpr double tan30 = 0.5773502691896258;
   if (std::abs(slope) > tan30) return;
+  const auto corner = gauge_corner(points);
+  const auto face_y = [&](double z) {
+    if (!corner) return end.y + slope * (z - end.z);
+    const double above = std::max(corner->z - z, 0.0);  // below its centre, the face is vertical
+    return corner->y - std::sqrt(corner->radius * corner->radius - above * above);
+  };
   std::vector<OutlinePoint> face;
-  for (double z = top + wanted; z > end.z + 0.5 * step; z -= step)
-    face.push_back({end.y + slope * (z - end.z), z, end.line});
+  for (double z = top + wanted; z > end.z + 0.5 * step; z -= step) face.push_back({face_y(z), z, end.line});
   points.insert(points.begin(), face.begin(), face.end());
-  outline.notes.push_back(
-      fmt::format("{}:{}: the gauge face ends {:.3g} mm below the top, continued straight to {:.3g} mm", file, end.line,
-                  (end.z - top) / mm, wanted / mm));
+  const std::string course =
+      corner ? fmt::format("along the corner's radius of {:.3g} mm, then vertically", corner->radius / mm) : "straight";
+  outline.notes.push_back(fmt::format("{}:{}: the gauge face ends {:.3g} mm below the top, continued {} to {:.3g} mm",
+                                      file, end.line, (end.z - top) / mm, course, wanted / mm));
 }
 
 bool is_tall(const std::vector<OutlinePoint>& points) {

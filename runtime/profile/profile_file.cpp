@@ -45,7 +45,7 @@ ProfilePoints read_points(std::istream& in, const std::filesystem::path& file, P
   const std::string name = file.string();
   switch (format_of(file, kind)) {
     case ProfileFormat::simpack:
-      return {read_simpack_points(in, name, kind), {}};
+      return read_simpack(in, name, kind);
     case ProfileFormat::miniprof:
       return read_miniprof(in, name, kind);
     case ProfileFormat::two_columns:

@@ -2,6 +2,7 @@
 
 #include <istream>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,10 @@ struct ProfileText {
 
 /// Text without blanks at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
+
+/// A note that the key on the text's line is ignored, where it is not one of `known` but for its case; empty of others.
+[[nodiscard]] std::string note_of_case(const ProfileText& text, std::string_view key,
+                                       std::span<const std::string_view> known);
 
 /// Fields between blanks; one comma or semicolon between two fields counts as a blank.
 [[nodiscard]] std::vector<std::string_view> fields(std::string_view text);

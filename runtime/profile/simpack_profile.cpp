@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/profile_text.hpp"
@@ -14,6 +16,10 @@
 namespace railtab {
 
 namespace {
+
+constexpr std::array<std::string_view, 13> spline_keys{
+    "point.dist.min", "shift.y",  "shift.z",  "rotate",    "bound.y.min", "bound.y.max", "bound.z.min",
+    "bound.z.max",    "mirror.y", "mirror.z", "inversion", "units.len.f", "units.ang.f"};
 
 /// The processing options of the spline section. Lengths in the file's unit, until the last step.
 struct Processing {
@@ -114,7 +120,7 @@ class SimpackReader {
  public:
   SimpackReader(std::istream& in, const std::string& file, ProfileKind kind) : text_{in, file, 0}, kind_(kind) {}
 
-  std::vector<OutlinePoint> read() {
+  ProfilePoints read() {
     while (!ended_) {
       const std::optional<std::string> line = text_.next();
       if (!line) throw input_error(text_.file, "the end of the file", "point.end and spline.end");
@@ -125,8 +131,8 @@ class SimpackReader {
     if (!processing_.units_len) {
       throw input_error(text_.file, "no units.len.f in the spline section", "units.len.f, the file's units per metre");
     }
-    process(processing_, points_);
-    return std::move(points_);
+    process(processing_, outline_.points);
+    return std::move(outline_);
   }
 
  private:
@@ -142,8 +148,13 @@ class SimpackReader {
     }
     const std::string_view key = trimmed(content.substr(0, equals));
     const std::string_view value = trimmed(content.substr(equals + 1));
-    if (section_ == Section::spline) return processing_.set(key, value, text_.place());
-    if (key == "type") check_type(value);
+    if (section_ == Section::header) {
+      if (key == "type") check_type(value);
+      return;
+    }
+    processing_.set(key, value, text_.place());
+    if (std::string note = note_of_case(text_, key, spline_keys); !note.empty())
+      outline_.notes.push_back(std::move(note));
   }
 
   bool change_section(std::string_view content) {
@@ -183,7 +194,7 @@ class SimpackReader {
     const std::string place = text_.place();
     // The weight steers smoothing alone, and points are not smoothed here.
     if (field.size() == 3) static_cast<void>(number(field[2], place, "a number for the weight"));
-    points_.push_back(
+    outline_.points.push_back(
         {number(field[0], place, "a number for y"), number(field[1], place, "a number for z"), text_.line});
   }
 
@@ -193,12 +204,12 @@ class SimpackReader {
   bool ended_ = false;
   bool type_found_ = false;
   Processing processing_;
-  std::vector<OutlinePoint> points_;
+  ProfilePoints outline_;
 };
 
 }  // namespace
 
-std::vector<OutlinePoint> read_simpack_points(std::istream& in, const std::string& file, ProfileKind kind) {
+ProfilePoints read_simpack(std::istream& in, const std::string& file, ProfileKind kind) {
   return SimpackReader(in, file, kind).read();
 }
 

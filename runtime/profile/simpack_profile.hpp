@@ -2,7 +2,6 @@
 
 #include <istream>
 #include <string>
-#include <vector>
 
 #include "railtab/runtime/profile/outline.hpp"
 #include "railtab/tables/profile_knots.hpp"
@@ -10,9 +9,9 @@
 namespace railtab {
 
 /// Points of a SIMPACK .prw/.prr file in m, after the file's own processing options in the format's order:
-/// 1 point.dist.min, 2 shift.y/.z, 3 rotate, 4 bound.y/.z, 5 mirror.y/.z, 6 inversion, 7 units.
+/// 1 point.dist.min, 2 shift.y/.z, 3 rotate, 4 bound.y/.z, 5 mirror.y/.z, 6 inversion, 7 units. Keys that are one of
+/// these but for their case get a note.
 /// @throws InputError with file and line
-[[nodiscard]] std::vector<OutlinePoint> read_simpack_points(std::istream& in, const std::string& file,
-                                                            ProfileKind kind);
+[[nodiscard]] ProfilePoints read_simpack(std::istream& in, const std::string& file, ProfileKind kind);
 
 }  // namespace railtab

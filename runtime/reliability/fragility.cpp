@@ -52,16 +52,6 @@ Probit scoring_step(const std::vector<ScaledLevel>& levels, const Probit& probit
   return {(bb * score_a - ab * score_b) / determinant, (aa * score_b - ab * score_a) / determinant};
 }
 
-/// Levels overlap: some intensity with an exceedance is below some intensity without one.
-bool overlap(const std::vector<FragilityLevel>& levels) {
-  double least_exceeded = INFINITY, most_stood = -INFINITY;
-  for (const FragilityLevel& level : levels) {
-    if (level.exceeded > 0) least_exceeded = std::min(least_exceeded, level.intensity);
-    if (level.exceeded < level.runs) most_stood = std::max(most_stood, level.intensity);
-  }
-  return least_exceeded < most_stood;
-}
-
 void add(const FragilitySample& sample, std::vector<FragilityLevel>& levels) {
   assert(sample.runs.size() == levels.size() && sample.exceeded.size() == levels.size());
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -95,8 +85,17 @@ double FragilityCurve::probability(double intensity) const noexcept {
   return normal_probability(std::log(intensity / median) / deviation).below;
 }
 
+bool levels_overlap(const std::vector<FragilityLevel>& levels) {
+  double least_exceeded = INFINITY, most_stood = -INFINITY;
+  for (const FragilityLevel& level : levels) {
+    if (level.exceeded > 0) least_exceeded = std::min(least_exceeded, level.intensity);
+    if (level.exceeded < level.runs) most_stood = std::max(most_stood, level.intensity);
+  }
+  return least_exceeded < most_stood;
+}
+
 std::optional<FragilityCurve> fit_fragility(const std::vector<FragilityLevel>& levels) {
-  if (!overlap(levels)) return std::nullopt;
+  if (!levels_overlap(levels)) return std::nullopt;
   double low = INFINITY, high = -INFINITY;
   for (const FragilityLevel& level : levels) {
     low = std::min(low, std::log(level.intensity));
@@ -139,8 +138,12 @@ FragilityFit fragility_with_bounds(const std::vector<double>& intensities, const
   std::vector<FragilityLevel> levels = without_runs(intensities);
   for (const FragilitySample& sample : samples) add(sample, levels);
   fit.curve = fit_fragility(levels);
-  for (const FragilityLevel& level : levels) {
-    fit.observed.push_back(wilson_interval(level.exceeded, level.runs, options.confidence));
+  // runs of one sample depend on each other: no more than samples are independent
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const auto independent =
+        std::count_if(samples.begin(), samples.end(), [&](const FragilitySample& s) { return s.runs[i] > 0; });
+    const double share = static_cast<double>(levels[i].exceeded) / static_cast<double>(levels[i].runs);
+    fit.observed.push_back(wilson_interval_of_share(share, static_cast<std::size_t>(independent), options.confidence));
   }
   if (!fit.curve || samples.size() < 2) return fit;
   std::vector<double> medians, deviations;

@@ -21,6 +21,10 @@ struct FragilityCurve {
   [[nodiscard]] double probability(double intensity) const noexcept;
 };
 
+/// Whether some intensity with an exceedance is below some intensity without one. Levels that do not overlap have no
+/// curve; levels that overlap without a curve have a probability that does not rise with the intensity.
+[[nodiscard]] bool levels_overlap(const std::vector<FragilityLevel>& levels);
+
 /// The curve of the largest likelihood Σ k·ln p + (n − k)·ln(1 − p) [Baker2015], as a probit regression on
 /// ln x by Fisher scoring. None where the likelihood has no finite maximum: fewer than two intensities, or one
 /// intensity divides levels without exceedance from levels with nothing else, or the probability does not rise with the
@@ -44,7 +48,7 @@ struct FragilityFit {
   std::optional<FragilityCurve> curve;
   ConfidenceInterval median, deviation;
   std::vector<ConfidenceInterval> at_levels;  ///< of the curve, one per level
-  std::vector<ConfidenceInterval> observed;   ///< share of the level's runs, wilson_interval()
+  std::vector<ConfidenceInterval> observed;   ///< share of the level's runs, wilson_interval_of_share() by its samples
   std::size_t replicates = 0;  ///< those with a curve: intervals are of them alone, and none where there are under half
 };
 

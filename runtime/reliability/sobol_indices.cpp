@@ -1,9 +1,12 @@
 #include "railtab/runtime/reliability/sobol_indices.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/reliability/counter_random.hpp"
 #include "railtab/runtime/reliability/replicates.hpp"
 
@@ -23,6 +26,11 @@ class Responses {
     for (double& value : values_) value -= mean_;
   }
   [[nodiscard]] double mean() const { return mean_; }
+  /// Whether a variance is more than rounding of one value.
+  [[nodiscard]] bool vary(const Rows& rows) const {
+    const double one = a(rows.front());
+    return std::any_of(rows.begin(), rows.end(), [&](std::size_t k) { return a(k) != one || b(k) != one; });
+  }
   [[nodiscard]] double variance(const Rows& rows) const {
     double sum = 0.0, square = 0.0;
     for (const std::size_t k : rows) {
@@ -72,6 +80,12 @@ SobolIndices sobol_indices(const SobolOptions& options, const ResponseOfUnitPoin
   const Responses responses(response(all_points(options)), options.samples);
   Rows rows(options.samples);
   std::iota(rows.begin(), rows.end(), std::size_t{0});
+  if (!responses.vary(rows)) {
+    throw ComputationError(fmt::format(
+        "importance: all {} independent responses are {:.6g}: without variance there are no Sobol' indices; "
+        "expected a measure that the variables change",
+        2 * options.samples, responses.mean()));
+  }
   SobolIndices indices;
   indices.mean = responses.mean();
   indices.variance = responses.variance(rows);
@@ -82,6 +96,7 @@ SobolIndices sobol_indices(const SobolOptions& options, const ResponseOfUnitPoin
       const double u = uniform_random(options.seed, {r, static_cast<std::uint32_t>(k), rows_stream});
       drawn[k] = static_cast<std::size_t>(u * static_cast<double>(rows.size()));
     }
+    if (!responses.vary(drawn)) continue;
     for (std::size_t i = 0; i < options.variables; ++i) {
       first[i].push_back(responses.first(i, drawn));
       total[i].push_back(responses.total(i, drawn));

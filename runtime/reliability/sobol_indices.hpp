@@ -21,7 +21,7 @@ struct SobolOptions {
 struct SobolIndices {
   std::vector<ConfidenceInterval> first;  ///< share of the variance that the variable causes alone
   std::vector<ConfidenceInterval> total;  ///< the same with all its interactions
-  double mean = 0.0, variance = 0.0;      ///< of the response; without variance all indices are NaN
+  double mean = 0.0, variance = 0.0;      ///< of the response
 };
 
 /// First-order and total Sobol' indices by direct sampling [SaltelliEtAl2010]: two matrices A and B of points, and for
@@ -29,7 +29,8 @@ struct SobolIndices {
 ///
 ///     S_i = Σ f(B)·(f(AB_i) − f(A)) / (N·V),     T_i = Σ (f(A) − f(AB_i))² / (2·N·V)
 ///
-/// A and B are halves of one Latin hypercube. Intervals are percentiles of a bootstrap over the N rows.
+/// A and B are halves of one Latin hypercube. Intervals are percentiles of a bootstrap over the N rows,
+/// of the replicates with variance. @throws ComputationError where all f(A) and f(B) are one value
 [[nodiscard]] SobolIndices sobol_indices(const SobolOptions& options, const ResponseOfUnitPoints& response);
 
 }  // namespace railtab

@@ -45,7 +45,7 @@ std::vector<KeyRow> mode_keys() {
       {"structure.mode_shapes", "", "shapes of the modes at nodes",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.shapes; }}},
       {"structure.static_flexibility", "",
-       "deflection of nodes under a unit vertical force: what the modes lack is stated",
+       "deflection of nodes under a unit vertical force; what the modes lack of it is reported",
        FileKey{[](SceneDraft& d) -> std::filesystem::path& { return import_of(d).files.flexibility; }}},
   };
 }

@@ -65,7 +65,7 @@ std::vector<KeyRow> deviation_keys() {
        {&deviation_zero}},
       {"span_deviation.start",
        "m",
-       "begin of the first span that turns",
+       "start of the first span that turns",
        NumberKey{of_deviation<&SpanDeviationParameters::start>, {-1e6, 1e6}},
        {},
        {&deviation_outside_run}},

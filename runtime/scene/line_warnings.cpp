@@ -38,12 +38,31 @@ void spans_beyond_run(const SceneCase& at, Warnings& list) {
                              text(at.wheels, "x", "m")));
 }
 
-bool is_zero(const SceneCase& at) { return at.model.irregularity.largest() == 0.0; }
+/// Whether wheelsets that follow the rails stay level on the record: they follow the mean of z_left and z_right.
+bool has_level_mean(const SceneCase& at) {
+  constexpr double rounding = 1e-12;  // [m]
+  const std::vector<UnitFactor> lengths{{"m", 1.0}, {"mm", 1e-3}};
+  const std::vector<FileColumn> columns = read_columns(*at.scene.irregularity);  // x, y_left, z_left, y_right, z_right
+  const FileColumn &left = columns[2], &right = columns[4];
+  const double of_left = factor_to_si(left, lengths), of_right = factor_to_si(right, lengths);
+  for (std::size_t i = 0; i < left.values.size(); ++i) {
+    if (std::abs(of_left * left.values[i] + of_right * right.values[i]) > rounding) return false;
+  }
+  return true;
+}
+
+/// Why a record moves no wheel; empty: it moves some.
+std::string ineffective(const SceneCase& at) {
+  if (at.model.irregularity.largest() == 0.0) return "is zero throughout: the track is perfect";
+  if (at.model.normal_contact != NormalContact::rigid || !has_level_mean(at)) return {};
+  return "has no effect: with contact.normal = \"rigid\" wheelsets follow the mean of z_left and z_right, which is "
+         "zero throughout";
+}
 
 void track_beyond_run(const SceneCase& at, Warnings& list) {
-  if (!at.scene.irregularity || is_zero(at)) return;
+  if (!at.scene.irregularity) return;
   const Interval measured{at.model.irregularity.begin(), at.model.irregularity.end()};
-  if (measured.meets(at.wheels)) return;
+  if (measured.meets(at.wheels) || !ineffective(at).empty()) return;
   list.push_back(fmt::format("irregularity.file {} is measured at {}, the wheels run at {}: their track is perfect",
                              file_name(*at.scene.irregularity), text(measured, "x", "m"), text(at.wheels, "x", "m")));
 }
@@ -71,7 +90,7 @@ void steps_at_ends(const SceneCase& at, Warnings& list) {
   };
   step_at(model.irregularity.begin(), "begins");
   step_at(model.irregularity.end(), "ends");
-  if (steps.empty()) return;
+  if (steps.empty() || !ineffective(at).empty()) return;
   list.push_back(fmt::format(
       "irregularity.file {} {}, not with zero: {}; fade the record in and out, or let it reach beyond the run",
       file_name(*at.scene.irregularity), steps,
@@ -126,6 +145,48 @@ void too_large(const SceneCase& at, Warnings& list) {
   }
 }
 
+/// Whether the speed changes during the run.
+bool changes_speed(const SceneCase& at) {
+  constexpr double constant = 1e-3;  // of the speed
+  if (!at.model.speed_profile) return false;
+  const SpeedProfile& profile = *at.model.speed_profile;
+  double lowest = profile.speed(0.0), highest = lowest;
+  for (const double time : profile.points()) {  // between them the speed is linear
+    const double speed = profile.speed(std::clamp(time, 0.0, at.duration));
+    lowest = std::min(lowest, speed);
+    highest = std::max(highest, speed);
+  }
+  return highest - lowest > constant * highest;
+}
+
+void without_brakes(const SceneCase& at, Warnings& list) {
+  if (!changes_speed(at)) return;
+  constexpr Eigen::Index about_axle = 4;
+  const std::vector<int>& wheelsets = at.model.vehicle.wheelsets;
+  bool on_wheelsets = false, on_others = false;
+  for (const BodyLoad& load : at.model.loads) {
+    if (!load.history.acting()[about_axle]) continue;
+    for (const int body : load.bodies) {
+      const bool wheelset = std::find(wheelsets.begin(), wheelsets.end(), body) != wheelsets.end();
+      (wheelset ? on_wheelsets : on_others) = true;
+    }
+  }
+  const std::string file = file_name(at.scene.train.speed_file);
+  if (!on_wheelsets) {
+    list.push_back(fmt::format(
+        "train.speed_file {} changes the speed by forces on the car bodies at their centres of gravity, which load "
+        "the rear of a train that brakes; brakes and traction are [[load]]s: My on every wheelset, positive for "
+        "brakes, and the opposite of their sum on the bogie that carries the brakes",
+        file));
+  } else if (!on_others) {
+    list.push_back(fmt::format(
+        "train.speed_file {}: [[load]]s turn wheelsets by My and no other body: a brake or drive torque needs its "
+        "reaction, the opposite My on the bogie that carries the brakes; without it the loads of a bogie's wheelsets "
+        "change too little",
+        file));
+  }
+}
+
 void judged_beyond_run(const SceneCase& at, Warnings& list) {
   const std::vector<double> judged = judged_stretch(at.scene);
   if (judged.empty() || Interval{judged[0], judged[1]}.meets(at.wheels)) return;
@@ -140,38 +201,18 @@ void judged_beyond_run(const SceneCase& at, Warnings& list) {
 const Warning judging_outside_run{"no wheel runs where it is judged", judged_beyond_run};
 const Warning speed_outside_run{"the speeds lie outside the run", speed_beyond_run};
 const Warning speed_without_brakes{
-    "the speed changes, and no load turns a wheelset", [](const SceneCase& at, Warnings& list) {
-      if (!at.model.speed_profile) return;
-      const SpeedProfile& profile = *at.model.speed_profile;
-      double lowest = profile.speed(0.0), highest = lowest;
-      for (const double time : profile.points()) {  // between them the speed is linear
-        const double speed = profile.speed(std::clamp(time, 0.0, at.duration));
-        lowest = std::min(lowest, speed);
-        highest = std::max(highest, speed);
-      }
-      constexpr double constant = 1e-3;  // of the speed
-      constexpr std::size_t about_axle = 4;
-      const auto& loads = at.scene.loads;
-      const bool turned = std::any_of(loads.begin(), loads.end(), [](const LoadParameters& load) {
-        const bool moment = load.load[about_axle].value_or(0.0) != 0.0 || !load.file.empty();
-        return moment && load.body.find("wheelset") != std::string::npos;
-      });
-      if (turned || highest - lowest <= constant * highest) return;
-      list.push_back(fmt::format(
-          "train.speed_file {} changes the speed by forces on the car bodies at their centres of gravity, which load "
-          "the rear of a train that brakes; brakes and traction are a [[load]] with My on every wheelset",
-          file_name(at.scene.train.speed_file)));
-    }};
+    "the speed changes, and no My acts on wheelsets, or none acts on other bodies as its reaction", without_brakes};
 const Warning deviation_zero{"it is 0", [](const SceneCase& at, Warnings& list) {
                                if (!at.scene.span_deviation || at.scene.span_deviation->amplitude != 0.0) return;
                                list.emplace_back("span_deviation.amplitude is 0: no span turns");
                              }};
 const Warning deviation_outside_run{"no wheel runs over the spans that turn", spans_beyond_run};
 const Warning irregularity_zero{
-    "the record is zero throughout", [](const SceneCase& at, Warnings& list) {
-      if (!at.scene.irregularity || !is_zero(at)) return;
-      list.push_back(fmt::format("irregularity.file {} is zero throughout: the track is perfect",
-                                 file_name(*at.scene.irregularity)));
+    "the record is zero throughout, or the mean of z_left and z_right is with contact.normal = \"rigid\"",
+    [](const SceneCase& at, Warnings& list) {
+      if (!at.scene.irregularity) return;
+      const std::string why = ineffective(at);
+      if (!why.empty()) list.push_back(fmt::format("irregularity.file {} {}", file_name(*at.scene.irregularity), why));
     }};
 const Warning irregularity_outside_run{"no wheel runs over the record", track_beyond_run};
 const Warning irregularity_with_step{"the record begins or ends under the wheels more than 0.1 mm off zero",

@@ -34,7 +34,7 @@ std::vector<KeyRow> body_load_keys() {
       {"load.Mz", "N m", "moment", OptionalNumberKey{load_component<5>, {-1e9, 1e9}}},
       {"load.start",
        "s",
-       "begin of the gust, or offset of the file's times (of its positions, in m)",
+       "start of the gust, or offset of the file's times (of its positions, in m)",
        NumberKey{of_load<&LoadParameters::start>, {-1e6, 1e6}},
        {},
        {&load_outside_run}},

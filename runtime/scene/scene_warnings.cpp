@@ -33,7 +33,7 @@ void warn_of_noise(const ProfileKnots& profile, Warnings& list) {
   const std::string warning = noise_warning(profile.name, noise);
   if (warning.empty()) return;
   list.push_back(fmt::format("{}; make a table by tablegen geometry --smoothing {:.1g} and name it in contact.table",
-                             warning, noise.deviation));
+                             warning, noise.smoothing));
 }
 
 /// Whether the scene names its profiles itself; those of a table were checked when it was made.

@@ -141,4 +141,16 @@ ModalBasis lowest_modes(const Sparse& stiffness, const Sparse& mass, int modes, 
       wanted, mass.rows(), lanczos.size()));
 }
 
+Matrix residual_shapes(const Sparse& stiffness, const ModalBasis& modes, const Matrix& forces) {
+  constexpr double least = 1e-5;
+  Matrix residual = stiffness_factor(stiffness).solve_columns(forces);
+  const double largest = forces.cwiseProduct(residual).colwise().sum().maxCoeff();
+  residual -= modes.shape * (modes.omega2.cwiseInverse().asDiagonal() * (modes.shape.transpose() * forces));
+  const SymmetricSpectrum spectrum = symmetric_spectrum(forces.transpose() * residual);
+  const Eigen::Index count = (spectrum.values.array() > least * largest).count();
+  const double omega2 = modes.omega2[modes.omega2.size() - 1];
+  const Eigen::VectorXd scale = (omega2 / spectrum.values.tail(count).array()).sqrt();
+  return residual * (spectrum.vectors.rightCols(count) * scale.asDiagonal());
+}
+
 }  // namespace railtab

@@ -18,4 +18,12 @@ struct ModalBasis {
 [[nodiscard]] ModalBasis lowest_modes(const Eigen::SparseMatrix<double>& stiffness,
                                       const Eigen::SparseMatrix<double>& mass, int modes, double tolerance = 1e-8);
 
+/// Residual flexibility: shapes that deflect under forces as all motions beyond the modes do. Of the forces E, one per
+/// column, the modes lack R = K⁻¹E − Φ Λ⁻¹ Φᵀ E. With EᵀR = V diag(a) Vᵀ the shapes are Ψ = ω R V diag(a)^(−1/2), ω
+/// that of the last mode, so that Ψ Ψᵀ E/ω² = R. They are orthogonal to the modes, and Ψᵀ K Ψ = ω².
+/// @return one column per a that is not below 1e-5 of the largest deflection at a force
+/// @throws ComputationError where K is not positive definite
+[[nodiscard]] Eigen::MatrixXd residual_shapes(const Eigen::SparseMatrix<double>& stiffness, const ModalBasis& modes,
+                                              const Eigen::MatrixXd& forces);
+
 }  // namespace railtab

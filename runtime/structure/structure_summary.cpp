@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/structure/bridge.hpp"
 #include "railtab/runtime/structure/free_motion.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
@@ -23,10 +24,24 @@ Eigen::VectorXd translation(const FeStructure& structure, int k) {
   return motion;
 }
 
+/// Turns modes of equal frequencies, whose directions are arbitrary, to those in which damping does not couple them.
+void turn_equal_modes(const Eigen::SparseMatrix<double>& damping, ModalBasis& basis) {
+  constexpr double alike = 2e-6;  // of ω²: 1e-6 of the frequency
+  const Eigen::Index modes = basis.omega2.size();
+  for (Eigen::Index begin = 0, end = 0; begin < modes; begin = end) {
+    for (end = begin + 1; end < modes && basis.omega2[end] <= (1.0 + alike) * basis.omega2[end - 1];) ++end;
+    if (end - begin == 1) continue;
+    const Eigen::MatrixXd shapes = basis.shape.middleCols(begin, end - begin);
+    basis.shape.middleCols(begin, end - begin) =
+        shapes * symmetric_spectrum(shapes.transpose() * (damping * shapes)).vectors;
+  }
+}
+
 void add_modes(const Eigen::SparseMatrix<double>& mass, const Eigen::SparseMatrix<double>& damping,
                const Eigen::SparseMatrix<double>& stiffness, int count, StructureSummary& summary) {
   if (count == 0) return;
-  const ModalBasis found = lowest_modes(stiffness, mass, count);
+  ModalBasis found = lowest_modes(stiffness, mass, count);
+  turn_equal_modes(damping, found);
   for (Eigen::Index k = 0; k < found.omega2.size(); ++k) {
     const Eigen::VectorXd shape = found.shape.col(k);
     const double omega = std::sqrt(found.omega2[k]);

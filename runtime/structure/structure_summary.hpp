@@ -16,7 +16,7 @@ struct StructureSummary {
   Eigen::Vector3d mass;             ///< that moves with x, y, z alike: without what is held [kg]
   std::vector<std::string> free;    ///< rigid motions that nothing resists: "moves along x", "turns about x (roll) …"
   std::vector<double> frequencies;  ///< lowest natural frequencies [Hz]; none where a rigid motion is free
-  std::vector<double> damping_ratios;  ///< at each of them, φᵀCφ/(2ω)
+  std::vector<double> damping_ratios;  ///< at each of them, φᵀCφ/(2ω); of equal ones rising
 };
 
 /// An imported structure without railtab's track. Where a node is expanded, whose rows stand around it, it is not known

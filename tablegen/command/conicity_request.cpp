@@ -77,12 +77,16 @@ WheelsetPair requested_wheelset(const TableCommandLine& line, double noise) {
                          line.given("left-rail") ? line.text("left-rail") : rail, noise)};
 }
 
-std::string names_of(const WheelsetPair& pair) {
-  const auto side = [](const WheelRailPair& p) {
-    return fmt::format("{} on {}", p.wheel().knots().name, p.rail().knots().name);
+/// Files in different folders may have the same name: unlike sides are named as the options are.
+std::string names_of(const TableCommandLine& line, const WheelRailPair& right) {
+  const auto left = [&](const std::string& option) {
+    return line.text((line.given("left-" + option) ? "left-" : "") + option);
   };
-  const std::string right = side(pair.right), left = side(pair.left);
-  return right == left ? right : fmt::format("right {}, left {}", right, left);
+  const std::string wheel = line.text("wheel"), rail = line.text("rail");
+  if (left("wheel") == wheel && left("rail") == rail) {
+    return fmt::format("{} on {}", right.wheel().knots().name, right.rail().knots().name);
+  }
+  return fmt::format("right {} on {}, left {} on {}", wheel, rail, left("wheel"), left("rail"));
 }
 
 std::vector<double> requested_amplitudes(const TableCommandLine& line) {
@@ -157,10 +161,10 @@ void set_pair(const TableCommandLine& line, ConicityRequest& request) {
   if (line.chosen("half-spacing")) {
     line.reject({"gauge", "flange-back"}, "no gauge and no flange-back distance beside --half-spacing");
   }
-  require_rail_to_incline(line);
+  errors_chosen(line) ? require_rail_to_incline(line) : require_options_of_profiles(line);
   const double noise = requested_noise(line);
   request.pair = requested_wheelset(line, noise);
-  request.name = names_of(*request.pair);
+  request.name = names_of(line, request.pair->right);
   if (!errors_chosen(line)) return;
   request.errors = error_options(line, request);
   request.exact = noise > 0.0 ? requested_wheelset(line, 0.0) : *request.pair;

@@ -82,6 +82,8 @@ void require_options_of_profiles(const TableCommandLine& line) {
   if (requested_noise(line) == 0.0) return;
   const std::string wheel = line.required("wheel"), rail = line.required("rail");
   if (is_profile_file(ProfileKind::wheel, wheel) || is_profile_file(ProfileKind::rail, rail)) return;
+  if (line.given("left-wheel") && is_profile_file(ProfileKind::wheel, line.text("left-wheel"))) return;
+  if (line.given("left-rail") && is_profile_file(ProfileKind::rail, line.text("left-rail"))) return;
   throw input_error("--smoothing",
                     fmt::format("{} with the built-in profiles {} and {}", line.text("smoothing"), wheel, rail),
                     "a profile file, or no --smoothing: built-in profiles have no noise");
@@ -152,7 +154,7 @@ void print_notes(const std::string& command, const WheelRailPair& pair) {
     const PointNoise noise = point_noise(profile->knots());
     if (const std::string warning = noise_warning(profile->knots().name, noise); !warning.empty()) {
       print_message(fmt::format("tablegen {}: warning: {}; smooth them by --smoothing {:.1g}\n", command, warning,
-                                noise.deviation));
+                                noise.smoothing));
     }
   }
 }
@@ -161,7 +163,7 @@ void print_effect_of_smoothing(const TableCommandLine& line, const WheelRailPair
   double deviation = 0.0;
   for (const ProfileCurve* profile : {&pair.wheel(), &pair.rail()}) {
     const PointNoise noise = point_noise(profile->knots());
-    if (!noise_warning(profile->knots().name, noise).empty()) deviation = std::max(deviation, noise.deviation);
+    if (!noise_warning(profile->knots().name, noise).empty()) deviation = std::max(deviation, noise.smoothing);
   }
   if (deviation == 0.0) return;
   const std::string proposed = fmt::format("{:.1g}", deviation);

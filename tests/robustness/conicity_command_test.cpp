@@ -54,6 +54,7 @@ TEST_F(ConicityCommand, WrongArguments) {
   expect_rejected(pair + "--sampling coarse", "--sampling", "refined or even");
   expect_rejected(pair + "--step 1", "step");
   expect_rejected(pair + "--smoothing -1", "--smoothing");
+  expect_rejected(pair + "--smoothing 1e-5", "--smoothing: found 1e-5 with the built-in profiles", "no noise");
   expect_rejected(pair + "--runs 30", "--runs", "--random-error");
   expect_rejected(pair + "--random-error 1e-5 --runs 1", "--runs", "2..100000");
   expect_rejected(pair + "--random-error 1", "random error");
@@ -98,6 +99,20 @@ TEST_F(ConicityCommand, UnlikeSides) {
   EXPECT_NEAR(rails["wave"]["conicity"], 0.025, 1e-6);
   EXPECT_EQ(rails["pair"]["left"]["rail"], "CHN60");
   EXPECT_NE(rails["pair"]["left"]["rail_offset"], rails["pair"]["right"]["rail_offset"]);
+}
+
+TEST_F(ConicityCommand, UnlikeFilesOfOneNameAreTwo) {
+  for (const char* folder : {"a", "b"}) {
+    std::filesystem::create_directories(folder_ / folder);
+    std::string wheel = "# units: mm\n";
+    for (int y = -30; y <= 30; ++y) wheel += std::to_string(y) + " " + std::to_string(-0.025 * y) + "\n";
+    write(std::string(folder) + "/wheel.txt", wheel);
+  }
+  const std::string arguments = "conicity --wheel a/wheel.txt --rail 60E1 --lateral -0.004:0.004 --amplitude 1e-3 ";
+  const std::string unlike = tablegen(arguments + "--left-wheel b/wheel.txt").out;
+  EXPECT_TRUE(unlike.starts_with("right a/wheel.txt on 60E1, left b/wheel.txt on 60E1: ")) << unlike;
+  const std::string same = tablegen(arguments + "--left-wheel a/wheel.txt").out;
+  EXPECT_TRUE(same.starts_with("wheel.txt on 60E1: ")) << same;
 }
 
 // A rail file with its origin 3 mm beside its top keeps it with --half-spacing, and loses it with a gauge.

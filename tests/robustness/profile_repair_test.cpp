@@ -109,6 +109,35 @@ TEST_F(ProfileRepair, WheelAxesFollowFromTheFlange) {
   expect_notes(both, {"z mirrored", "y mirrored"});
 }
 
+// The S1002 from y_begin on, with a vertical face of the rim behind the flange or at the field side up to these
+// heights.
+std::string s1002_with_faces(double y_begin, double back, double front, double y_sign = 1.0, double z_sign = 1.0) {
+  const ProfileCurve exact(standard_profile(ProfileKind::wheel, "S1002", 0.0));
+  std::string text = "# units: mm\n";
+  const auto add = [&](double y, double z) { text += fmt::format("{:.6f} {:.6f}\n", y_sign * y, z_sign * z); };
+  const CurvePoint first = exact.at(exact.s_begin()), last = exact.at(exact.s_end());
+  for (double z = back; z < first.z / mm - 0.5; z += 0.5) add(first.y / mm, z);
+  for (double s = exact.s_begin(); s < exact.s_end(); s += 0.4 * mm) {
+    const CurvePoint p = exact.at(s);
+    if (p.y >= y_begin) add(p.y / mm, p.z / mm);
+  }
+  for (double z = last.z / mm; z > front; z -= 0.5) add(last.y / mm, z);
+  return text;
+}
+
+TEST_F(ProfileRepair, AFaceOfTheRimThatIsHigherThanTheFlangeIsNone) {
+  constexpr double none_behind = 1e3, none_at_field = 1e3;
+  for (const std::string& text : {s1002_with_faces(-58 * mm, none_behind, -40), s1002_with_faces(-1, none_behind, -40),
+                                  s1002_with_faces(-1, -35, none_at_field), s1002_with_faces(-1, -35, -35)}) {
+    const ProfileKnots k = wheel(text);
+    expect_notes(k, {});
+    EXPECT_GT(*std::max_element(k.z.begin(), k.z.end()), 27 * mm);
+  }
+  const ProfileKnots both = wheel(s1002_with_faces(-58 * mm, none_behind, -40, -1.0, -1.0));
+  expect_notes(both, {"z mirrored", "y mirrored"});
+  EXPECT_GT(*std::max_element(both.z.begin(), both.z.end()), 27 * mm);
+}
+
 TEST_F(ProfileRepair, AMissingFlangeIsSaid) {
   const ProfileKnots k = wheel("# units: mm\n-30 3\n-20 1.2\n-10 0.5\n0 0\n10 -0.5\n20 -1\n30 -1.5\n");
   expect_notes(k, {"no flange"});
@@ -161,8 +190,11 @@ TEST_F(ProfileRepair, AGaugeFaceNotMeasuredDeepEnoughIsContinued) {
     return WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)), ProfileCurve(rail), {})
         .rail_offset();
   };
-  // The last arc, R13, is continued by its tangent: 1.3²/(2·13) = 0.065 mm at 14 mm below the top.
-  EXPECT_NEAR(offset(cut), offset(whole), 0.08 * mm);
+  for (const double depth : {10.6, 12.0, 13.0}) {
+    const ProfileKnots k = read_profile_file(write("r.txt", rail_60e1_points(depth * mm)), ProfileKind::rail);
+    expect_notes(k, {"along the corner's radius of 13 mm, then vertically to 17 mm"});
+    EXPECT_NEAR(offset(k), offset(whole), 0.01 * mm) << depth;
+  }
   const ProfileKnots shallow = read_profile_file(write("r.txt", rail_60e1_points(8.0 * mm)), ProfileKind::rail);
   expect_notes(shallow, {});
   EXPECT_THROW(static_cast<void>(offset(shallow)), InputError);
@@ -200,6 +232,16 @@ TEST_F(ProfileRepair, ReadsMiniprofRailsWithTheirGaugeSideAtPositiveX) {
   expect_notes(k, {"y = -X", "field side ends 4.6"});
   ASSERT_EQ(k.y.size(), 61u);
   EXPECT_NEAR(k.y.front(), -0.030, 1e-9);
+}
+
+TEST_F(ProfileRepair, KeysThatDifferInCaseAloneAreSaid) {
+  const ProfileKnots mini =
+      read_profile_file(write("w.whl", miniprof("YOFFSET=2\nNote=3\n", mini_points)), ProfileKind::wheel);
+  expect_notes(mini, {"w.whl:4: the key YOFFSET is ignored; the known key is YOffset", "z mirrored", "y mirrored"});
+  const std::string points = "-60 20\n-50 28\n-40 8\n-20 0\n10 0\n30 5\n40 5\n";
+  const std::string options = "Shift.Y = 2\ncomment = a\n" + in_mm;
+  const ProfileKnots k = read_profile_file(write("w.prw", simpack(options, 1, points)), ProfileKind::wheel);
+  expect_notes(k, {"w.prw:6: the key Shift.Y is ignored; the known key is shift.y"});
 }
 
 TEST_F(ProfileRepair, RejectsBrokenMiniprofFilesWithTheLine) {
@@ -316,6 +358,31 @@ TEST(PointNoise, IsTheScatterOfThePointsAndNoneOfExactOnes) {
       EXPECT_LT(point_noise(standard_profile(kind, name, 0.025)).curvature, 1.0) << name;
     }
   }
+}
+
+TEST(PointNoise, ScatterOfTheRunningBandAloneIsFound) {
+  const ProfileCurve exact(standard_profile(ProfileKind::wheel, "S1002", 0.0));
+  for (const double spacing : {0.1 * mm, 0.2 * mm, 0.5 * mm}) {
+    Noisy p = noisy_s1002(exact, spacing, 10e-6);
+    const Noisy clean = noisy_s1002(exact, spacing, 0.0);
+    for (std::size_t i = 0; i < p.y.size(); ++i) {
+      if (std::abs(clean.y[i]) < 10 * mm) continue;
+      p.y[i] = clean.y[i];
+      p.z[i] = clean.z[i];
+    }
+    const PointNoise found = point_noise(spline_through_points(ProfileKind::wheel, "band", p.y, p.z));
+    EXPECT_GT(found.deviation, 7e-6) << spacing;
+    EXPECT_LT(found.deviation, 18e-6) << spacing;
+    EXPECT_LT(found.smoothing, 6e-6) << spacing;  // of all points
+    EXPECT_GT(found.y_begin, -15 * mm) << spacing;
+    EXPECT_LT(found.y_end, 15 * mm) << spacing;
+    EXPECT_NE(noise_warning("band", found).find("of band from y = "), std::string::npos);
+  }
+  // Arcs of the flange in coarse points are no noise.
+  const Noisy coarse = noisy_s1002(exact, 2 * mm, 0.0);
+  EXPECT_EQ(
+      noise_warning("coarse", point_noise(spline_through_points(ProfileKind::wheel, "coarse", coarse.y, coarse.z))),
+      "");
 }
 
 TEST(SmoothingSpline, RejectsNoiseOutOfRange) {

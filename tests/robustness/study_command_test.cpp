@@ -211,6 +211,81 @@ TEST_F(StudyCommand, JudgesWholeDecks) {
   EXPECT_GT(largest, 1.005 * midspan) << "a node beside midspan";
 }
 
+// A plan that varies the bridge low-passes each run at the cut-off of its own deck: as a scene with that bridge.
+TEST_F(StudyCommand, LowPassesEachDeckAtItsOwnCutOff) {
+  const auto scene_of_length = [](const char* length) {
+    return std::string(
+               "[contact]\nmode = \"online\"\n[track]\nlength_before = 30\nlength_after = 30\n[integration]\n"
+               "time_step = 1e-3\n[[bridge]]\nmass = 15e3\nE = 30e9\nIy = 1.0\nlength = ") +
+           length + "\n";
+  };
+  const std::string speed =
+      "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nkey = \"train.speed_kmh\"\nvalues = [250]\n";
+  const auto kept_text = [&](const std::string& folder, std::size_t row) {
+    return read_results(folder_ / (folder + "/" + table(folder + "/runs.csv")[row][0] + ".h5")).header.scene_text;
+  };
+  write("scene.toml", scene_of_length("25.0"));
+  write("plan.toml", speed + "[[vary]]\nkey = \"bridge.length\"\nvalues = [12.0, 25.0]\n");
+  ASSERT_EQ(study("plan.toml -o varied"), 0);
+  EXPECT_FALSE(json("varied/study.json").contains("deck_cut_off"));
+  std::size_t row = 0;
+  for (const char* length : {"12.0", "25.0"}) {
+    const std::string own = std::string("own") + length;
+    write("scene.toml", scene_of_length(length));
+    write("plan.toml", speed);
+    ASSERT_EQ(study("plan.toml -o " + own), 0);
+    for (const char* measure : {"deck_acceleration[m/s2]", "deck_acceleration_unfiltered[m/s2]"}) {
+      EXPECT_EQ(column("varied/runs.csv", measure)[row], column(own + "/runs.csv", measure)[0]) << length << measure;
+    }
+    ++row;
+    const std::string text = kept_text(own, 1), cut_off = text.substr(text.rfind("output.deck_cut_off = "));
+    EXPECT_NE(kept_text("varied", row).find(cut_off), std::string::npos) << cut_off;
+  }
+  // third natural frequencies: 139 and 32 Hz
+  EXPECT_GT(json("own12.0/study.json")["deck_cut_off"], 4.0 * json("own25.0/study.json")["deck_cut_off"].get<double>());
+}
+
+// Integer keys by a formula or a table: the key's value is rounded down, not the variable.
+TEST_F(StudyCommand, RoundsIntegerKeysDownNotTheirVariable) {
+  const std::string begin =
+      "scene = \"scene.toml\"\nkeep_results = true\n[[vary]]\nname = \"u\"\ndistribution = \"uniform\"\nlow = 0.5\n"
+      "high = 1.5\n[[vary.set]]\nkey = \"irregularity.seed\"\n";
+  for (const char* set : {"factor = 1000\noffset = -499\n", "table = [[0.5, 1], [1.5, 1001]]\n"}) {
+    write("plan.toml", begin + set + "[sampling]\nsamples = 4\n");
+    const std::string folder = std::string("by_") + set[0];
+    ASSERT_EQ(study("plan.toml -o " + folder), 0) << set;
+    const auto rows = table(folder + "/runs.csv");
+    ASSERT_EQ(rows.size(), 5U) << set;
+    std::set<std::string> unloading;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const double u = std::stod(rows[i][1]);
+      EXPECT_NE(u, std::floor(u));
+      const RunResults results = read_results(folder_ / (folder + "/" + rows[i][0] + ".h5"));
+      const std::string seed = "irregularity.seed = " + std::to_string(int(std::floor(1.0 + 1000.0 * (u - 0.5))));
+      EXPECT_NE(results.header.scene_text.find(seed), std::string::npos) << results.header.scene_text;
+      unloading.insert(column(folder + "/runs.csv", "wheel_unloading_unfiltered[-]")[i - 1]);
+    }
+    EXPECT_EQ(unloading.size(), 4U) << "four tracks";
+  }
+}
+
+// Five of six samples are one run and the sixth another: means are those of the samples.
+TEST_F(StudyCommand, MeansAreOfAllSamples) {
+  write(
+      "plan.toml",
+      "scene = \"scene.toml\"\n[[vary]]\nkey = \"irregularity.seed\"\ndistribution = \"uniform\"\nlow = 1\nhigh = 2.2\n"
+      "[sampling]\nsamples = 6\n");
+  ASSERT_EQ(study("plan.toml -o out"), 0);
+  const auto rows = table("out/runs.csv");
+  ASSERT_EQ(rows.size(), 3U);
+  const std::vector<std::string> values = column("out/runs.csv", "wheel_unloading_unfiltered[-]");
+  double mean = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) mean += std::stod(values[i]) * (rows[i + 1][1] == "1" ? 5.0 : 1.0) / 6.0;
+  const nlohmann::json measure = json("out/study.json")["measures"]["wheel_unloading_unfiltered"];
+  EXPECT_NEAR(measure["mean"], mean, 1e-12);
+  EXPECT_EQ(measure["runs"], 2);
+}
+
 // Bytes are the same from one worker and two, from shards, and after five kills; a longer plan keeps what is there.
 TEST_F(StudyCommand, MakesTheSameTableHoweverItIsMade) {
   const std::string plan = std::string(speeds) + seeds + "[sampling]\nmethod = \"monte-carlo\"\nseed = 3\nsamples = ";
@@ -278,6 +353,35 @@ TEST_F(StudyCommand, CountsExceedances) {
   EXPECT_EQ(table("out/fragility.csv")[0].back(), "curve_high[-]");
 }
 
+// Runs of a sample at several values of another variable, here of one that changes nothing, are no further trials.
+TEST_F(StudyCommand, CountsSamplesAsTrialsOfAFragilityCurve) {
+  const std::string end = std::string(seeds) +
+                          "[sampling]\nsamples = 6\n[probability]\nmethod = \"fragility\"\nlimit = 0.12\n"
+                          "measure = \"wheel_unloading_unfiltered\"\nintensity = \"train.speed_kmh\"\n";
+  write("plan.toml", speeds + end);
+  ASSERT_EQ(study("plan.toml -o one"), 0);
+  write("plan.toml", std::string(speeds) + "[[vary]]\nkey = \"assessment.section_step\"\nvalues = [0.5, 1.0]\n" + end);
+  ASSERT_EQ(study("plan.toml -o two"), 0);
+  EXPECT_EQ(column("two/fragility.csv", "runs"), (std::vector<std::string>{"12", "12", "12"}));
+  for (const char* name : {"probability[-]", "probability_low[-]", "probability_high[-]"}) {
+    EXPECT_EQ(column("two/fragility.csv", name), column("one/fragility.csv", name)) << name;
+  }
+}
+
+// An intensity that slows the train down.
+TEST_F(StudyCommand, SaysThatExceedancesDoNotGrow) {
+  write("plan.toml",
+        std::string("scene = \"scene.toml\"\n[[vary]]\nname = \"w\"\nvalues = [100, 150, 200]\n[[vary.set]]\n"
+                    "key = \"train.speed_kmh\"\nfactor = -1\noffset = 300\n") +
+            seeds +
+            "[sampling]\nsamples = 6\n[probability]\nmethod = \"fragility\"\nlimit = 0.12\n"
+            "measure = \"wheel_unloading_unfiltered\"\nintensity = \"w\"\n");
+  const Outcome outcome = vsi("study plan.toml -o out");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.output.find("no fragility curve: exceedances do not grow with the intensity\n"), std::string::npos)
+      << outcome.output;
+}
+
 // Four levels of chains, whose runs are decided by those before them: the same after kills and on one worker.
 TEST_F(StudyCommand, SubsetSimulationIsTheSameAfterKills) {
   write("plan.toml", std::string("scene = \"scene.toml\"\n") + friction +
@@ -326,6 +430,39 @@ TEST_F(StudyCommand, FindsAPeakWithAQuarterOfTheGrid) {
     largest = std::max(largest, std::stod(value));
   EXPECT_EQ(peak["value"], largest);
   EXPECT_EQ(peak["grid"], 100);
+  EXPECT_EQ(peak["ended_early"], false);
+  const nlohmann::json measure = json("out/study.json")["measures"]["wheel_unloading"];
+  EXPECT_EQ(measure["greatest"], largest);
+  EXPECT_FALSE(measure.contains("mean")) << "points of a search have none";
+
+  write("plan.toml",
+        "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.speed_kmh\"\nrange = \"100:140:10\"\n"
+        "[peak]\nmeasure = \"wheel_unloading\"\ncoarse_step = 2\n");
+  const std::string few = vsi("study plan.toml -o few").output;
+  EXPECT_NE(few.find("3 of 5 points of the grid; not resolved to one step: the points that it begins with are more "
+                     "than a quarter of the grid\n"),
+            std::string::npos)
+      << few;
+}
+
+// A run that derails has no largest value.
+TEST_F(StudyCommand, HasNoPeakWhereRunsEndEarly) {
+  write("scene.toml",
+        "[contact]\nmode = \"online\"\n[track]\nkind = \"rigid\"\n[integration]\nduration = 3.0\n"
+        "[[load]]\nFy = 3e5\nMx = 6e5\nstart = 0.05\ngust_duration = 4.0\n");
+  write("plan.toml",
+        "scene = \"scene.toml\"\n[[vary]]\nname = \"w\"\nunit = \"kN\"\nvalues = [0, 300]\n"
+        "[[vary.set]]\nkey = \"load.1.Fy\"\nfactor = 1e3\n[[vary.set]]\nkey = \"load.1.Mx\"\nfactor = 2e3\n"
+        "[peak]\nmeasure = \"wheel_unloading\"\n");
+  const Outcome outcome = vsi("study plan.toml -o out");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.output.find("wheel_unloading: runs end early from w = 300 kN on: no largest value\n"),
+            std::string::npos)
+      << outcome.output;
+  const nlohmann::json peak = json("out/study.json")["peak"];
+  EXPECT_EQ(peak["ended_early"], true);
+  EXPECT_EQ(peak["w"], 300.0);
+  EXPECT_FALSE(peak.contains("value"));
 }
 
 // The wind at which wheels are unloaded by 0.3, at two speeds: what a table of all runs says, with a third of them.
@@ -385,6 +522,14 @@ TEST_F(StudyCommand, FindsWhichVariableMatters) {
   EXPECT_GT(variables["train.speed_kmh"]["total"]["value"], 1.0);  // which no share is
   const Outcome again = vsi("study plan.toml -o out");
   EXPECT_NE(again.output.find("errors of sampling: 8 samples are too few"), std::string::npos) << again.output;
+
+  write("plan.toml",
+        "scene = \"scene.toml\"\n[[vary]]\nkey = \"assessment.section_step\"\ndistribution = \"uniform\"\nlow = 0.1\n"
+        "high = 1\n[importance]\nmeasure = \"wheel_unloading\"\nsamples = 8\n");
+  const Outcome none = vsi("study plan.toml -o none");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(none.output.find("importance: all 16 independent responses are "), std::string::npos) << none.output;
+  EXPECT_EQ(none.output.find("nan"), std::string::npos) << none.output;
 }
 
 // Wind speed drives two forces, by its square.
@@ -489,6 +634,9 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
   rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\n", "found neither std nor cov");
   rejected("scene = \"none.toml\"\n[[vary]]\nkey = \"contact.friction\"\nvalues = [0.1]\n",
            "plan.toml:1: scene: found no file none.toml");
+  rejected("scene = \".\"\n[[vary]]\n",
+           "plan.toml:1: scene: found a folder ., expected the file of a scene, relative to the plan");
+  rejected("scene = \"\"\n[[vary]]\n", "plan.toml:1: scene: found the text \"\", expected a text that is not empty");
   rejected(std::string(speeds) + "[peak]\nmeasure = \"speed\"\n",
            "plan.toml:6: peak.measure: found the text \"speed\", expected one of deck_acceleration");
   rejected(
@@ -501,6 +649,28 @@ TEST_F(StudyCommand, RejectsWrongPlans) {
   rejected(std::string(speeds) + speeds, "plan.toml:5");
   const std::string first = begin + "key = \"load.1.Fz\"\nvalues = [1]\n[[vary]]\nname = \"again\"\nkey = ";
   rejected(first + "\"load.Fz\"\nvalues = [2]\n", "vary[2].key: found load.1.Fz twice, expected each key once");
+  for (const char* name : {"run", "complete", "message", "wheel_unloading"}) {
+    rejected(begin + "name = \"" + name + "\"\nkey = \"train.speed_kmh\"\nvalues = [100]\n",
+             std::string("plan.toml:3: vary[1].name: found \"") + name +
+                 "\", expected another name: runs.csv has a column of this one");
+  }
+  rejected(begin + "key = \"train.speed_kmh\"\nvalues = [200, 100]\n[peak]\nmeasure = \"derailment\"\n",
+           "plan.toml:2: vary[1].values: found values that do not rise, expected values that rise");
+}
+
+// A message about a key names the variable that sets this key, and none where it could be one of several.
+TEST_F(StudyCommand, NamesTheVariableOfTheKey) {
+  const auto rejected = [&](const std::string& plan, const std::string& message) {
+    write("plan.toml", plan);
+    expect_rejected("study plan.toml -o out", message);
+  };
+  const std::string begin = "scene = \"scene.toml\"\n[[vary]]\nkey = ";
+  rejected(begin + "\"integration.duration\"\nvalues = [1]\n[[vary]]\nkey = \"load.1.gust_duration\"\nvalues = [1]\n",
+           "vsi: plan.toml:5: vary[2].load.1.gust_duration: found 0 [[load]] in the scene");
+  write("scene.toml", std::string(scene) + "[[load]]\nFz = 1.0\n[[load]]\nFz = 1.0\n");
+  rejected(begin + "\"load.2.Fz\"\nvalues = [\"x\"]\n", "vsi: plan.toml:2: vary[1].load.2.Fz: found the text \"x\"");
+  rejected(begin + "\"load.1.Fz\"\nvalues = [1]\n[[vary]]\nkey = \"load.2.Fz\"\nvalues = [\"x\"]\n",
+           "vsi: plan.toml: load.Fz: found the text \"x\"");
 }
 
 TEST_F(StudyCommand, KeepsOtherFilesAndOtherStudies) {
@@ -512,11 +682,15 @@ TEST_F(StudyCommand, KeepsOtherFilesAndOtherStudies) {
   EXPECT_NE(outcome.output.find("mine/runs.csv: found a file that begins with 'my numbers'"), std::string::npos)
       << outcome.output;
   EXPECT_EQ(text("mine/runs.csv"), "my numbers\n");
+  const std::string of_scene = vsi("study plan.toml -o .").output;
+  EXPECT_NE(of_scene.find("-o .: found the scene itself, ./scene.toml, in this folder, expected another folder"),
+            std::string::npos)
+      << of_scene;
   ASSERT_EQ(study("plan.toml -o one"), 0);
   write("scene.toml", std::string(scene) + "time_step = 5e-4\n");
   const std::string other = vsi("study plan.toml -o one").output;
   EXPECT_NE(other.find("one/scene.toml: found another scene, expected that of the runs in this folder, or another "
-                       "folder for -o; line 12 was '' and is 'time_step = 5e-4'\n"),
+                       "folder for -o; line 12 was an empty line and is 'time_step = 5e-4'\n"),
             std::string::npos)
       << other;
 }

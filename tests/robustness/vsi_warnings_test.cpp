@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "railtab/runtime/profile/profile_curve.hpp"
@@ -120,6 +122,56 @@ TEST_F(SceneWarnings, OfStepsAndRecordsTooFarApart) {
   EXPECT_EQ(at("time_step = 0.002\n", track).find("a step is"), std::string::npos);
 }
 
+// At 50 m/s and 0.5 ms a step is 25 mm long.
+TEST_F(SceneWarnings, OfWavesAndFlatsThatStepsMiss) {
+  const auto at = [this](const std::string& more, const std::string& step = "",
+                         const char* contact = "mode = \"online\"") {
+    write("scene.toml", std::string("[contact]\n") + contact + "\n[train]\nspeed = 50.0\n[track]\nkind = \"rigid\"\n" +
+                            more + "[integration]\nduration = 0.5\n" + step);
+    return vsi("run scene.toml --plan").output;
+  };
+  const auto silent = [](const std::string& output) {
+    EXPECT_EQ(output.find("a step is"), std::string::npos) << output;
+  };
+  const std::string rest = ": forces and accelerations of so short waves are wrong or missing; use at most ";
+
+  const std::string polygon = "[[wheel]]\npolygon_amplitude = 5e-6\npolygon_order = ";
+  expect(at(polygon + "100\n"),
+         "a step is 0.025 m long, a wave of the polygon of [[wheel]] 1 of 1 is 0.0289 m" + rest + "0.00014 s");
+  silent(at(polygon + "100\n", "time_step = 1.4e-4\n"));
+  silent(at(polygon + "24\n"));
+  silent(at("[[wheel]]\npolygon_order = 100\nrun_out = 1e-4\n"));  // without amplitude
+
+  const std::string flat = "[[wheel]]\nwheelset = 1\nflat_edges = \"rounded\"\nflat_length = ";
+  expect(at(flat + "0.03\n"), "a step is 0.025 m long, the flat of [[wheel]] 1 of 1 is 0.03 m" + rest + "0.0003 s");
+  silent(at(flat + "0.06\n"));
+  const char* const follow = "normal = \"rigid\"";
+  expect(at(flat + "0.06\n", "", follow), "the flat of [[wheel]] 1 of 1 is 0.06 m" + rest + "0.0003 s");
+
+  std::string contour = "angle[deg],rise[mm]\n";
+  for (int i = 0; i < 360; ++i) contour += std::to_string(i) + "," + (i % 6 < 3 ? "0.01" : "-0.01") + "\n";
+  write("wheel.csv", contour);
+  expect(at("[[wheel]]\nfile = \"wheel.csv\"\n"), "% of the rms slope of wheel.file wheel.csv of [[wheel]] 1 of 1");
+
+  const auto corrugated = [this](double wave) {
+    std::string rows = "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n";
+    for (int i = -8000; i <= 8000; ++i) {
+      const double x = 5e-3 * i, z = 0.02 * std::cos(2.0 * std::numbers::pi * x / wave);
+      rows += std::to_string(x) + ",0," + std::to_string(z) + ",0,0\n";
+    }
+    write("corrugated.csv", rows);
+    return std::string("[irregularity]\nfile = \"corrugated.csv\"\n");
+  };
+  // of a wave twice as long as the step 1 - 2/pi is lost, of one eight times as long 2.6 %
+  const std::string short_wave = corrugated(0.05);
+  expect(at(short_wave),
+         "points so far apart lose 36 % of the rms slope of z_left in irregularity.file corrugated.csv" + rest +
+             "0.00012 s");
+  expect(at(short_wave, "", follow), "lose 36 % of the rms slope of irregularity.file corrugated.csv");
+  silent(at(short_wave, "time_step = 1.2e-4\n"));
+  silent(at(corrugated(0.2)));
+}
+
 TEST_F(SceneWarnings, OfSpansThatTheTrainHardlyReaches) {
   expect(plan("[[bridge]]\nlength = 1.5\n"),
          "bridge.length = 1.5 m is less than 3 times track.sleeper_spacing = 0.6 m: the train reaches the span through "
@@ -137,11 +189,35 @@ TEST_F(SceneWarnings, OfLoadsAndSpeedsThatChangeNothing) {
          "the run is at t = 0 to 0.1 s: its first speed holds throughout");
   write("brake.csv", "t[s],V[m/s]\n0,40\n0.1,39\n");
   const std::string braked = "[train]\nspeed_file = \"brake.csv\"\n";
-  expect(plan(braked), "warning: train.speed_file brake.csv changes the speed by forces on the car bodies");
-  EXPECT_EQ(plan(braked + "[[load]]\nbody = \"wheelset-1\"\nMy = 1e3\n").find("forces on the car bodies"),
-            std::string::npos);
+  const std::string by_forces = "warning: train.speed_file brake.csv changes the speed by forces on the car bodies";
+  expect(plan(braked), by_forces);
+  expect(plan(braked + "[[load]]\nbody = \"wheelset-1\"\nFx = 1e3\n"), by_forces);
+  const std::string torque = braked + "[[load]]\nbody = \"wheelset-1\"\nMy = 1e3\n";
+  const std::string alone = plan(torque);
+  expect(alone, "warning: train.speed_file brake.csv: [[load]]s turn wheelsets by My and no other body");
+  EXPECT_EQ(alone.find("forces on the car bodies"), std::string::npos) << alone;
+  const std::string reacted = plan(torque + "[[load]]\nbody = \"bogie-1\"\nMy = -1e3\n");
+  EXPECT_EQ(reacted.find("warning"), std::string::npos) << reacted;
   write("flat.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[mm]\n-90,0,0,0,0\n90,0,0,0,0\n");
   expect(plan("[irregularity]\nfile = \"flat.csv\"\n"), "flat.csv is zero throughout: the track is perfect");
+}
+
+TEST_F(SceneWarnings, OfRecordsThatMoveNoWheelThatFollowsTheRails) {
+  const std::string follow = "normal = \"rigid\"", profiles = "mode = \"online\"";
+  const auto record = [&](const std::string& rows, const std::string& contact) {
+    write("track.csv", "x[m],y_left[mm],z_left[mm],y_right[mm],z_right[m]\n" + rows);
+    return plan("[irregularity]\nfile = \"track.csv\"\n", contact);
+  };
+  const std::string lateral = "-90,0,0,0,0\n0,3,0,3,0\n90,0,0,0,0\n",
+                    twist = "-90,0,0,0,0\n0,0,-3,0,3e-3\n90,0,0,0,0\n";
+  const std::string message =
+      "warning: irregularity.file track.csv has no effect: with contact.normal = \"rigid\" wheelsets follow the mean "
+      "of z_left and z_right, which is zero throughout";
+  for (const std::string& rows : {lateral, twist}) {
+    expect(record(rows, follow), message);
+    EXPECT_EQ(record(rows, profiles).find("warning"), std::string::npos);
+  }
+  EXPECT_EQ(record("-90,0,0,0,0\n0,0,-3,0,4e-3\n90,0,0,0,0\n", follow).find("warning"), std::string::npos);
 }
 
 TEST_F(SceneWarnings, OfARunThatEndsBeforeItIsJudged) {

@@ -560,6 +560,29 @@ TEST(ImportedBridge, ADeckFarFromTheTrainIsDoubted) {
   EXPECT_EQ(deck_place_warnings({1500.0, 1530.0}).size(), 1U);
 }
 
+// A mass on equal springs in all directions has any three directions at right angles as modes; dampers along axes of
+// their own damp three of them.
+TEST(ImportedBridge, DampingRatiosOfEqualFrequenciesAreThoseOfTheDampers) {
+  constexpr double mass = 2e3, stiffness = 8e6;
+  const double critical = 2.0 * std::sqrt(stiffness * mass);
+  const Eigen::Vector3d ratios(0.01, 0.02, 0.05);
+  const Eigen::Matrix3d axes = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
+  const Eigen::MatrixXd damping = critical * axes * ratios.asDiagonal() * axes.transpose();
+  FeStructure structure;
+  structure.mass = (mass * Eigen::MatrixXd::Identity(3, 3)).sparseView();
+  structure.stiffness = (stiffness * Eigen::MatrixXd::Identity(3, 3)).sparseView();
+  structure.damping = damping.sparseView();
+  structure.motion = {0, 1, 2};
+  structure.node_of_row = {1, 1, 1};
+  for (std::size_t k = 0; k < 3; ++k) structure.nodes[1].rows[k] = {static_cast<int>(k)};
+  const StructureSummary summary = summarise(structure, {}, 3);
+  ASSERT_EQ(summary.damping_ratios.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(summary.damping_ratios[k], ratios[static_cast<Eigen::Index>(k)], 1e-9);
+    EXPECT_NEAR(summary.frequencies[k], std::sqrt(stiffness / mass) / (2.0 * std::numbers::pi), 1e-9);
+  }
+}
+
 TEST(ImportedBridge, DampingByRatioTypeAndCoefficients) {
   ImportParameters parameters = WrittenSpan(FeFormat::matrix_market).parameters;
   parameters.files.damping.clear();

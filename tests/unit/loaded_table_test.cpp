@@ -10,11 +10,13 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <numbers>
 #include <random>
 
 #include "loaded_table_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/contact/frictionless_contact.hpp"
 #include "railtab/runtime/contact_files/contact_table_file.hpp"
 #include "railtab/runtime/profile/profile_file.hpp"
 #include "railtab/runtime/scene/scene_contact.hpp"
@@ -480,6 +482,36 @@ TEST(LoadedTable, IsNotUsedUnaskedWhereItsCertifiedErrorIsLarge) {
     EXPECT_EQ(asked.unused_loaded_error(), 0.0);
   }
   std::filesystem::remove(file);
+}
+
+// Below the table's deepest level the force of its margin falls before that of the patches rises.
+TEST(LoadedTable, ALoadIsCarriedAtTheLeastLowering) {
+  LoadedTableData data = tread_table();
+  data.contact_modulus *= 0.6;  // softer patches, so that forces fall
+  const ContactGeometry geometry(s1002_on_60e1(), std::make_shared<LoadedTable>(data));
+  const NormalContactModel normal = table_material(geometry);
+  int falling = 0;
+  for (double y = -2.7e-3; y < -0.8e-3; y += 0.1e-3) {
+    WheelsetPose touch{y, s1002_on_60e1().touch_height(y, 0.0, 0.0), 0.0, 0.0};
+    const auto force = [&](double lowering) {
+      return frictionless_force(geometry, {y, touch.z + lowering, 0.0, 0.0}, normal)[1];
+    };
+    // the peak of the force before it first falls, and a load that is carried there and deeper
+    double lowering = 2e-5, peak = 0.0;
+    while (lowering < 3e-4 && force(lowering) >= peak) {
+      peak = force(lowering);
+      lowering *= 1.001;
+    }
+    if (lowering >= 3e-4) continue;
+    for (const double share : {0.9, 0.95}) {
+      ++falling;
+      const auto found = lowering_under_load(geometry, touch, share * peak, normal);
+      ASSERT_TRUE(found);
+      EXPECT_LT(*found, lowering) << "y = " << y << " m, load = " << share * peak << " N";
+      EXPECT_NEAR(force(*found), share * peak, 1e-3);
+    }
+  }
+  EXPECT_GT(falling, 30);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/lowest_modes.hpp"
@@ -37,6 +39,28 @@ TEST(LowestModes, OfAChainAreThoseOfItsFormula) {
     const double omega = 2.0 * std::sqrt(1e6 / 4.0) * std::sin(0.5 * M_PI * (2 * k + 1) / (2 * n + 1));
     EXPECT_NEAR(std::sqrt(basis.omega2[k]), omega, 1e-8 * omega);
   }
+}
+
+// A force of 1 N at mass j moves mass i by (min(i, j) + 1)/k.
+TEST(LowestModes, AndResidualShapesDeflectAsTheWholeStructure) {
+  constexpr int n = 60;
+  constexpr double k = 1e6;
+  const ModalBasis basis = lowest_modes(chain(n, k), diagonal(Eigen::VectorXd::Constant(n, 4.0)), 5);
+  const std::vector<int> places{9, 30, 59};
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(n, 3);
+  for (std::size_t f = 0; f < places.size(); ++f) forces(places[f], static_cast<Eigen::Index>(f)) = 1.0;
+  const Eigen::MatrixXd shapes = residual_shapes(chain(n, k), basis, forces);
+  ASSERT_EQ(shapes.cols(), 3);
+  const Eigen::MatrixXd by_modes = basis.shape * basis.omega2.cwiseInverse().asDiagonal() * basis.shape.transpose();
+  const Eigen::MatrixXd moved = (by_modes + shapes * shapes.transpose() / basis.omega2[4]) * forces;
+  for (int i = 0; i < n; ++i) {
+    for (std::size_t f = 0; f < places.size(); ++f) {
+      EXPECT_NEAR(moved(i, static_cast<Eigen::Index>(f)), (std::min(i, places[f]) + 1) / k, 1e-6 * n / k) << i;
+    }
+  }
+  // nothing is left beyond all modes
+  const ModalBasis all = lowest_modes(chain(6, k), diagonal(Eigen::VectorXd::Constant(6, 4.0)), 6);
+  EXPECT_EQ(residual_shapes(chain(6, k), all, Eigen::MatrixXd::Identity(6, 6)).cols(), 0);
 }
 
 // Fewer masses than modes asked for: those that there are, every one converged.

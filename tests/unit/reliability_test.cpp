@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/reliability/counter_random.hpp"
 #include "railtab/runtime/reliability/distribution.hpp"
 #include "railtab/runtime/reliability/fragility.hpp"
@@ -182,6 +183,14 @@ TEST(Proportion, WilsonBoundsSolveTheirEquation) {
   EXPECT_EQ(wilson_interval(20, 20, 0.95).high, 1.0);
 }
 
+// The share of values 0, ½ and 1 has the bounds of as many trials.
+TEST(Proportion, IntervalOfAShareIsThatOfTrials) {
+  const ConfidenceInterval share = wilson_interval_of_share(0.35, 20, 0.95), trials = wilson_interval(7, 20, 0.95);
+  EXPECT_NEAR(share.low, trials.low, 1e-15);
+  EXPECT_NEAR(share.high, trials.high, 1e-15);
+  EXPECT_EQ(wilson_interval_of_share(1.0, 4, 0.95).high, 1.0);
+}
+
 // ln x is probit-linear with known parameters and shares of runs that equal the curve: the fit returns them.
 TEST(Fragility, FindsTheCurveOfExactShares) {
   constexpr double median = 31.0, deviation = 0.25;
@@ -269,6 +278,26 @@ TEST(Fragility, BoundsDoNotShrinkWithIntensities) {
   }
 }
 
+// Three runs of each sample that end alike are one trial.
+TEST(Fragility, ObservedSharesAreThoseOfSamples) {
+  const std::vector<FragilitySample> samples{{{3, 3}, {3, 3}}, {{3, 3}, {0, 3}}, {{3, 3}, {0, 3}}, {{3, 0}, {0, 0}}};
+  const FragilityFit fit = fragility_with_bounds({2.0, 3.0}, samples, {});
+  const ConfidenceInterval low = wilson_interval(1, 4, 0.95), high = wilson_interval(3, 3, 0.95);
+  ASSERT_EQ(fit.observed.size(), 2U);
+  EXPECT_EQ(fit.observed[0].value, low.value);
+  EXPECT_EQ(fit.observed[0].low, low.low);
+  EXPECT_EQ(fit.observed[0].high, low.high);
+  EXPECT_EQ(fit.observed[1].low, high.low);
+  EXPECT_EQ(fit.observed[1].high, high.high);
+}
+
+TEST(Fragility, TellsLevelsThatOverlapFromDividedOnes) {
+  EXPECT_TRUE(levels_overlap({{2.0, 10, 8}, {3.0, 10, 2}}));
+  EXPECT_TRUE(levels_overlap({{2.0, 10, 10}, {3.0, 10, 0}}));
+  EXPECT_FALSE(levels_overlap({{2.0, 10, 0}, {3.0, 10, 4}, {4.0, 10, 10}}));
+  EXPECT_FALSE(levels_overlap({{2.0, 10, 0}, {3.0, 10, 0}}));
+}
+
 TEST(Fragility, HasNoBoundsOfOneSample) {
   const FragilityFit fit = fragility_with_bounds({2.0, 3.0}, {{{10, 10}, {2, 7}}}, {});
   EXPECT_TRUE(fit.curve);
@@ -298,6 +327,22 @@ TEST(SobolIndices, OfTheIshigamiFunction) {
     EXPECT_NEAR(indices.total[i].value, total[i], 0.02) << i;
     EXPECT_LT(indices.first[i].low, indices.first[i].high);
     EXPECT_LT(indices.total[i].high - indices.total[i].low, 0.1);
+  }
+}
+
+// One value has no shares, however it is rounded; one row of eight that differs has some, in the replicates that draw
+// it.
+TEST(SobolIndices, NeedVariance) {
+  const auto constant = [](const UnitPoints& points) { return std::vector<double>(points.size(), 0.1); };
+  EXPECT_THROW(static_cast<void>(sobol_indices({.variables = 2, .samples = 7}, constant)), ComputationError);
+  const auto one_row = [](const UnitPoints& points) {
+    std::vector<double> values(points.size(), 0.1);
+    values[3] = 1.0;
+    return values;
+  };
+  const SobolIndices indices = sobol_indices({.variables = 1, .samples = 8}, one_row);
+  for (const ConfidenceInterval& index : {indices.first[0], indices.total[0]}) {
+    EXPECT_TRUE(std::isfinite(index.value) && std::isfinite(index.low) && std::isfinite(index.high));
   }
 }
 

@@ -225,6 +225,7 @@ void moving_loads(const std::vector<AssessTrain>& trains, const std::vector<std:
       "Axle loads act at points of the deck, without spreading by sleepers and without vehicle-bridge interaction: "
       "accelerations by the modes up to the cut-off frequency of each deck.");
   for (const assess::DeckAssessment& deck : assessment.decks) {
+    if (const std::string doubt = doubtful_cut_off(deck.deck); !doubt.empty()) report.notes.push_back(doubt + ".");
     if (!has_free_end(deck.deck)) continue;
     report.notes.push_back(fmt::format(
         "An end of deck {} is free to move: an axle load that comes on accelerates it at once, while rails, "

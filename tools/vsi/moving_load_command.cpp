@@ -122,6 +122,9 @@ std::vector<ModalDeck> decks_of(const CommandLine& line, const DynamicModes& mod
   try {
     std::vector<ModalDeck> decks = decks_of_scene(scene, modes);
     if (!scene.spans.empty()) warn_of_frequencies(line, decks, "bridge.mass (per metre) and E Iy");
+    for (const ModalDeck& deck : decks) {
+      if (const std::string doubt = doubtful_cut_off(deck); modes.count == 0 && !doubt.empty()) line.warn(doubt);
+    }
     return decks;
   } catch (const InputError& wrong) {
     throw with_scene_line(wrong, scene, file);

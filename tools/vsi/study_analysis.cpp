@@ -103,6 +103,7 @@ void fit(const StudyPlan& plan, const StudyRuns& runs, const std::vector<StudyRo
   }
   result.fragility =
       fragility_with_bounds(intensities, samples, {plan.replicates, plan.confidence, plan.sampling.seed});
+  for (std::size_t i = 0; i < intensities.size(); ++i) result.exceedance[i].probability = result.fragility->observed[i];
 }
 
 SubsetOptions subset_options(const StudyPlan& plan) {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <set>
+#include <map>
 
 #include "command/command_line.hpp"
 #include "command/json_text.hpp"
@@ -97,14 +97,21 @@ int report_study(const StudyPlan& plan, const SceneParameters& scene, const Stud
                  const CommandLine& line, int code) {
   const fs::path folder = line.required("output");
   std::string rows;
-  StudyReport report{plan, runs, result, scene.name, scene.text, runs.table(result.points, rows), {}, {}, {}};
-  std::set<std::string> names;
+  StudyReport report{plan, runs, result, scene.name, scene.text, runs.table(result.points, rows), {}, {}, {}, {}};
+  std::map<std::string, std::size_t> places;
   for (const StudyPoint& point : result.points) {
+    const std::string name = runs.name_of(point);
+    if (const auto known = places.find(name); known != places.end()) {
+      report.weights[known->second] += 1.0;
+      continue;
+    }
     std::optional<StudyRow> row = runs.find_row(point);
-    if (!row || !names.insert(runs.name_of(point)).second) continue;
+    if (!row) continue;
+    places.emplace(name, report.rows.size());
     report.rows.push_back(std::move(*row));
-    report.names.push_back(runs.name_of(point));
+    report.names.push_back(name);
     report.points.push_back(point);
+    report.weights.push_back(1.0);
   }
   write_study(report, rows, folder);
   const std::vector<std::string> warnings = print_study_warnings(runs, result.points, line);

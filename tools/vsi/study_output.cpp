@@ -153,7 +153,7 @@ void write_arrays(const StudyReport& report, const fs::path& name) {
   file.attribute("", "plan", std::string_view(report.plan.text));
   file.attribute("", "scene", std::string_view(report.scene_text));
   file.attribute("", "program_version", std::string_view(version()));
-  file.attribute("", "deck_cut_off", report.runs.deck_cut_off());
+  if (const std::optional<double> cut_off = report.runs.deck_cut_off()) file.attribute("", "deck_cut_off", *cut_off);
   for (std::size_t j = 0; j < report.plan.variables.size(); ++j) write_variable(report, j, file);
   for (std::size_t k = 0; k < study_measures().size(); ++k) {
     const MeasureKind& kind = *study_measures()[k];
@@ -245,19 +245,26 @@ Json importance_json(const StudyPlan& plan, const SobolIndices& indices) {
   return json;
 }
 
-/// Extremes and mean of a measure over the complete runs.
+/// Extremes of a measure over the complete runs, and its mean over their points.
 struct MeasureSpread {
   std::size_t count = 0, greatest_at = 0;
   double least = INFINITY, greatest = -INFINITY, mean = 0.0;
 };
 
+/// Searches choose their points by the values: a mean of these says nothing.
+bool has_means(StudyMethod method) {
+  return method != StudyMethod::subset && method != StudyMethod::peak && method != StudyMethod::threshold;
+}
+
 MeasureSpread spread_of(const StudyReport& report, std::size_t measure) {
   MeasureSpread s;
+  double points = 0.0;
   for (std::size_t i = 0; i < report.rows.size(); ++i) {
     const std::optional<double> value = report.rows[i].measures[measure];
     if (!report.rows[i].complete || !value) continue;
     ++s.count;
-    s.mean += (*value - s.mean) / static_cast<double>(s.count);
+    points += report.weights[i];
+    s.mean += (*value - s.mean) * report.weights[i] / points;
     s.least = std::min(s.least, *value);
     if (*value > s.greatest) {
       s.greatest = *value;
@@ -294,6 +301,13 @@ std::string exceedance_text(const StudyPlan& plan, const StudyResult& result) {
     const auto no_run = [&](auto of) { return std::none_of(result.exceedance.begin(), result.exceedance.end(), of); };
     const bool none = no_run([](const ExceedanceCount& e) { return e.exceeded > 0; });
     const bool all = no_run([](const ExceedanceCount& e) { return e.exceeded < e.runs; });
+    std::vector<FragilityLevel> levels;
+    for (const ExceedanceCount& e : result.exceedance) {
+      levels.push_back({e.point[plan.intensity].number, e.runs, e.exceeded});
+    }
+    if (levels_overlap(levels)) {
+      return text + "  no fragility curve: exceedances do not grow with the intensity\n";
+    }
     return text + fmt::format("  no fragility curve: the likelihood has no finite maximum; {}\n",
                               none  ? "no run exceeds the limit: higher intensities, or a lower limit"
                               : all ? "every run exceeds the limit: lower intensities, or a higher limit"
@@ -398,12 +412,47 @@ Json threshold_json(const StudyPlan& plan, const StudyResult& result) {
   return json;
 }
 
+/// Why a search has not come to one step.
+std::string unresolved_text(const StudyPlan& plan, const PeakSearch& peak) {
+  if (peak.resolved) return "";
+  return fmt::format("; not resolved to one step: {}",
+                     peak.values.size() > plan.variables.front().values.size() / 4
+                         ? "the points that it begins with are more than a quarter of the grid"
+                         : "a quarter of the grid is used up");
+}
+
+/// The least point whose run ended early.
+std::optional<std::size_t> first_early_end(const PeakSearch& peak) {
+  for (const auto& [point, value] : peak.values) {
+    if (!std::isfinite(value)) return point;
+  }
+  return std::nullopt;
+}
+
 std::string peak_text(const StudyPlan& plan, const PeakSearch& peak) {
   const StudyVariable& v = plan.variables.front();
+  if (const std::optional<std::size_t> first = first_early_end(peak)) {
+    const bool all = std::none_of(peak.values.find(*first), peak.values.end(),
+                                  [](const auto& p) { return std::isfinite(p.second); });
+    return fmt::format("{}: runs end early {} {} = {}{}{}: no largest value\n", plan.measure, all ? "from" : "at",
+                       v.name, v.values[*first].cell(), v.unit == "-" ? "" : " " + v.unit,
+                       all ? " on" : ", not at all higher values");
+  }
   return fmt::format("largest {}: {:.6g} at {} = {} {}, {} of {} points of the grid{}\n", plan.measure,
                      peak.values.at(peak.highest), v.name, v.values[peak.highest].cell(), v.unit == "-" ? "" : v.unit,
-                     peak.values.size(), v.values.size(),
-                     peak.resolved ? "" : "; not resolved to one step: a quarter of the grid is used up");
+                     peak.values.size(), v.values.size(), unresolved_text(plan, peak));
+}
+
+Json peak_json(const StudyPlan& plan, const PeakSearch& peak) {
+  const StudyVariable& v = plan.variables.front();
+  const std::optional<std::size_t> early = first_early_end(peak);
+  Json json{{"measure", plan.measure}, {v.name, v.values[early.value_or(peak.highest)].number}};
+  if (!early) json["value"] = peak.values.at(peak.highest);
+  json.update({{"ended_early", early.has_value()},
+               {"points", peak.values.size()},
+               {"grid", v.values.size()},
+               {"resolved", peak.resolved}});
+  return json;
 }
 
 }  // namespace
@@ -430,33 +479,23 @@ Json study_json(const StudyReport& report) {
             {"scene", report.scene_name},
             {"version", version()},
             {"runs", report.count.finished},
-            {"ended_early", report.count.ended_early},
-            {"deck_cut_off", report.runs.deck_cut_off()}};
+            {"ended_early", report.count.ended_early}};
+  if (const std::optional<double> cut_off = report.runs.deck_cut_off()) json["deck_cut_off"] = *cut_off;
   Json measures = Json::object();
   for (std::size_t k = 0; k < study_measures().size(); ++k) {
     const MeasureSpread s = spread_of(report, k);
     if (s.count == 0) continue;
-    measures[std::string(study_measures()[k]->name)] = {{"unit", study_measures()[k]->unit},
-                                                        {"runs", s.count},
-                                                        {"least", s.least},
-                                                        {"mean", s.mean},
-                                                        {"greatest", s.greatest},
-                                                        {"greatest_run", report.names[s.greatest_at]}};
+    Json& measure = measures[std::string(study_measures()[k]->name)];
+    measure = {{"unit", study_measures()[k]->unit}, {"runs", s.count}, {"least", s.least}};
+    if (has_means(report.plan.method)) measure["mean"] = s.mean;
+    measure.update({{"greatest", s.greatest}, {"greatest_run", report.names[s.greatest_at]}});
   }
   json["measures"] = measures;
   const StudyResult& result = report.result;
   if (result.subset || !result.exceedance.empty()) json["probability"] = probability_json(report.plan, result);
   if (!result.thresholds.empty()) json["threshold"] = threshold_json(report.plan, result);
   if (result.importance) json["importance"] = importance_json(report.plan, *result.importance);
-  if (result.peak) {
-    const StudyVariable& v = report.plan.variables.front();
-    json["peak"] = {{"measure", report.plan.measure},
-                    {v.name, v.values[result.peak->highest].number},
-                    {"value", result.peak->values.at(result.peak->highest)},
-                    {"points", result.peak->values.size()},
-                    {"grid", v.values.size()},
-                    {"resolved", result.peak->resolved}};
-  }
+  if (result.peak) json["peak"] = peak_json(report.plan, *result.peak);
   return json;
 }
 
@@ -466,9 +505,9 @@ std::string study_text(const StudyReport& report) {
     const MeasureSpread s = spread_of(report, k);
     if (s.count == 0) continue;
     const MeasureKind& kind = *study_measures()[k];
-    text +=
-        fmt::format("{:28} {:>10.4g} to {:>10.4g}, mean {:>10.4g} {}; largest at {}\n", kind.name, s.least, s.greatest,
-                    s.mean, kind.unit == "-" ? "" : kind.unit, point_text(report.plan, report.points[s.greatest_at]));
+    const std::string mean = has_means(report.plan.method) ? fmt::format(", mean {:>10.4g}", s.mean) : "";
+    text += fmt::format("{:28} {:>10.4g} to {:>10.4g}{} {}; largest at {}\n", kind.name, s.least, s.greatest, mean,
+                        kind.unit == "-" ? "" : kind.unit, point_text(report.plan, report.points[s.greatest_at]));
   }
   const StudyResult& result = report.result;
   if (result.subset) text += subset_text(report.plan, *result.subset);

@@ -17,6 +17,7 @@ struct StudyReport {
   std::vector<StudyRow> rows;      ///< of the finished runs
   std::vector<std::string> names;  ///< of these
   std::vector<StudyPoint> points;  ///< of these
+  std::vector<double> weights;     ///< how many points of the study each of these is
 };
 
 /// What a study's HDF5 file says that it is.

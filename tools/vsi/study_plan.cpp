@@ -18,12 +18,7 @@
 #include "sweep_plan.hpp"
 
 namespace railtab::vsi {
-namespace {
 
-constexpr double any = 1e15, tiny = 1e-12;
-constexpr int most_samples = 1000000;
-
-/// "load.Fy" of "load.2.Fy".
 std::string without_number(const std::string& key) {
   const std::size_t first = key.find('.'), second = key.find('.', first + 1);
   if (first == key.npos || second == key.npos) return key;
@@ -31,6 +26,11 @@ std::string without_number(const std::string& key) {
   const bool number = !entry.empty() && entry.find_first_not_of("0123456789") == entry.npos;
   return number ? key.substr(0, first) + key.substr(second) : key;
 }
+
+namespace {
+
+constexpr double any = 1e15, tiny = 1e-12;
+constexpr int most_samples = 1000000;
 
 /// "load.1.Fy" of "load.Fy", which is the key of the only [[load]].
 std::string with_number(const std::string& key) {
@@ -120,6 +120,23 @@ void check_tables(const StudyVariable& v, const TomlSection& s) {
         v.random() ? "a table as far as the distribution, which at_least and at_most cut off"
                    : "a table as far as the values");
   }
+}
+
+/// Names of all measures of runs.
+std::vector<std::string> measure_names() {
+  std::vector<std::string> names;
+  for (const MeasureKind& kind : measure_kinds()) {
+    if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) > 0) names.emplace_back(kind.name);
+  }
+  return names;
+}
+
+/// The table of the runs has a column of each name once.
+void check_column(const StudyVariable& v, const TomlSection& s) {
+  std::vector<std::string> taken = measure_names();
+  taken.insert(taken.end(), {"run", "complete", "simulated_time", "message"});
+  if (std::find(taken.begin(), taken.end(), v.name) == taken.end()) return;
+  throw s.error("name", fmt::format("\"{}\"", v.name), "another name: runs.csv has a column of this one");
 }
 
 std::string unit_of(const StudyKey& key) {
@@ -237,6 +254,7 @@ StudyVariable read_variable(TomlSection& s, const toml::table& table) {
     throw s.error("name", fmt::format("\"{}\" in \"{}\"", v.name, v.unit),
                   "name and unit without comma, quote or bracket, a name without slash");
   }
+  check_column(v, s);
   const int ways = s.has("values") + s.has("range") + s.has("distribution");
   if (ways == 0) s.reject_others();  // a slip in one of them
   if (ways != 1) throw s.error("values", fmt::format("{} of values, range, distribution", ways), "one of them");
@@ -266,11 +284,7 @@ void read_sampling(TomlSection& s, StudyPlan& plan) {
 }
 
 void read_measure(TomlSection& s, StudyPlan& plan) {
-  std::vector<std::string> names;
-  for (const MeasureKind& kind : measure_kinds()) {
-    if (std::count(kind.stages.begin(), kind.stages.end(), AssessmentStage::contact) > 0) names.emplace_back(kind.name);
-  }
-  plan.measure = s.text_of("measure", names);
+  plan.measure = s.text_of("measure", measure_names());
   plan.measure_place = s.place();
 }
 
@@ -330,14 +344,17 @@ void read_peak(TomlSection& s, StudyPlan& plan) {
   s.reject_others();
 }
 
+bool rises(const StudyVariable& variable) {
+  const auto falls = [](const StudyValue& a, const StudyValue& b) { return a.number >= b.number; };
+  return std::adjacent_find(variable.values.begin(), variable.values.end(), falls) == variable.values.end();
+}
+
 void read_threshold(TomlSection& s, StudyPlan& plan) {
   plan.method = StudyMethod::threshold;
   read_measure(s, plan);
   plan.limit = s.number("limit", {"", -any, any});
   plan.intensity = read_gridded(s, "variable", plan);
-  const std::vector<StudyValue>& values = plan.variables[plan.intensity].values;
-  const auto falls = [](const StudyValue& a, const StudyValue& b) { return a.number >= b.number; };
-  if (std::adjacent_find(values.begin(), values.end(), falls) != values.end()) {
+  if (!rises(plan.variables[plan.intensity])) {
     throw s.error("variable", fmt::format("values of {} that do not rise", plan.variables[plan.intensity].name),
                   "values that rise, from where the limit is not reached");
   }
@@ -368,6 +385,10 @@ void check_variables(TomlSection& root, const StudyPlan& plan) {
   if (plan.method == StudyMethod::peak && (plan.variables.size() != 1 || all || !plan.variables.front().numeric())) {
     throw root.error("vary", fmt::format("{} variables, {} of them random", plan.variables.size(), random),
                      "one [[vary]] with numbers as values or a range");
+  }
+  if (plan.method == StudyMethod::peak && !rises(plan.variables.front())) {
+    throw input_error(plan.variables.front().place + ".values", "values that do not rise",
+                      "values that rise, as [peak] needs them");
   }
   if (plan.method == StudyMethod::threshold && random > 0)
     throw root.error("vary", "a random variable", "variables with values, as [threshold] needs them");
@@ -429,6 +450,7 @@ void check_size(const StudyPlan& plan) {
 }  // namespace
 
 StudyPlan read_study_plan(const std::filesystem::path& file) {
+  if (file.empty()) throw input_error("plan", "an empty name", "the name of a plan in TOML");
   StudyPlan plan;
   plan.file = file;
   plan.text = read_toml_text(file, "a plan in TOML");
@@ -438,7 +460,11 @@ StudyPlan read_study_plan(const std::filesystem::path& file) {
   TomlSection root(file, "", table, {}, values);
   plan.scene_file = file.parent_path() / root.text("scene");
   if (!is_file(plan.scene_file)) {
-    throw root.error("scene", fmt::format("no file {}", plan.scene_file.string()), "a scene, relative to the plan");
+    std::error_code unreadable;
+    const bool none = !std::filesystem::exists(plan.scene_file, unreadable);
+    throw root.error("scene",
+                     fmt::format("{} {}", none ? "no file" : what_is_at(plan.scene_file), plan.scene_file.string()),
+                     "the file of a scene, relative to the plan");
   }
   plan.keep_results = root.flag("keep_results");
   if (root.has("deck_cut_off")) plan.deck_cut_off = root.number("deck_cut_off", {"Hz", 1.0, 1000.0});

@@ -31,6 +31,9 @@ struct StudyKey {
   [[nodiscard]] double value(double x) const noexcept;
 };
 
+/// "load.Fy" of "load.2.Fy", as messages about a scene name the key.
+[[nodiscard]] std::string without_number(const std::string& key);
+
 /// What a [[vary]] of a plan varies.
 struct StudyVariable {
   std::string name;   ///< its column: the key, or a name of its own where it sets several keys

@@ -24,11 +24,10 @@ namespace fs = std::filesystem;
 namespace {
 
 StudyValue sampled(const StudyVariable& variable, Probability p) {
-  double value = quantile(*variable.distribution, p);
-  if (std::any_of(variable.keys.begin(), variable.keys.end(), [](const StudyKey& k) { return k.whole; })) {
-    value = std::floor(value);
-  }
-  return {value, std::nullopt};
+  const double value = quantile(*variable.distribution, p);
+  const bool whole = std::all_of(variable.keys.begin(), variable.keys.end(),
+                                 [](const StudyKey& k) { return k.whole && k.as_it_is(); });
+  return {whole ? std::floor(value) : value, std::nullopt};
 }
 
 UnitPoints unit_points(const StudyPlan& plan, std::size_t variables) {
@@ -80,9 +79,24 @@ std::vector<std::string_view> vehicles_of(std::string_view train) {
   return vehicles;
 }
 
-/// A value as TOML writes it in the scene: that of train.consist, "a+b*8", is a list there.
-std::string in_scene(const StudyKey& key, const StudyValue& value) {
-  if (!value.other) return fmt::format("{}", key.as_it_is() ? value.number : key.value(value.number));
+/// Whether a variable may change the natural frequencies of the decks, and with them their cut-off.
+bool varies_decks(const StudyPlan& plan, const SceneParameters& scene) {
+  const bool bridge = !scene.spans.empty() || scene.structure.files.given();
+  const auto of_deck = [&](const StudyKey& key) {
+    return key.key.starts_with("bridge.") || key.key.starts_with("structure.") ||
+           (bridge && key.key.starts_with("track."));
+  };
+  return std::any_of(plan.variables.begin(), plan.variables.end(), [&](const StudyVariable& variable) {
+    return std::any_of(variable.keys.begin(), variable.keys.end(), of_deck);
+  });
+}
+
+/// A value of a variable as TOML writes it in the scene: that of train.consist, "a+b*8", is a list there.
+std::string in_scene(const StudyVariable& variable, const StudyKey& key, const StudyValue& value) {
+  if (!value.other) {
+    const double number = key.as_it_is() ? value.number : key.value(value.number);
+    return fmt::format("{}", key.whole && variable.random() ? std::floor(number) : number);
+  }
   if (key.key != "train.consist") return *value.other;
   const std::string train = value.cell();
   return fmt::format("[\"{}\"]", fmt::join(vehicles_of(train), "\", \""));
@@ -106,28 +120,36 @@ void require_measure(const StudyPlan& plan, const SceneParameters& scene) {
 }
 
 /// A message about a key without the line of the scene: its value stands in the plan.
-std::string without_scene_line(const std::string& message, const std::string& key, const std::string& scene_file) {
+std::string_view without_scene_line(std::string_view message, const std::string& scene_file) {
   if (!message.starts_with(scene_file + ":")) return message;
-  const std::string rest = message.substr(message.find(": ", scene_file.size()) + 2);
-  const bool of_key = rest.substr(0, rest.find(": found")).find(key) != rest.npos;
-  return of_key ? rest : message;
+  return message.substr(message.find(": ", scene_file.size()) + 2);
 }
 
-/// With the variable whose key the message names, and its line of the plan.
+/// Whether a message is of a key: "KEY: found", "KEY[2]: found" or "unknown key 'KEY'".
+bool is_of_key(std::string_view message, const std::string& key) {
+  constexpr std::string_view unknown = "unknown key '";
+  if (message.starts_with(unknown)) return message.substr(unknown.size()).starts_with(key + "'");
+  return message.starts_with(key + ":") || message.starts_with(key + "[");
+}
+
+/// With the variable whose key the message is of, and its line of the plan; none where several may be meant.
 InputError with_plan_line(const InputError& wrong, const StudyPlan& plan) {
-  const std::string message = wrong.what(), found = message.substr(0, message.find("(changed:"));
+  const std::string message = wrong.what();
   if (message.starts_with(plan.file.string() + ":")) return wrong;
+  const std::string rest(without_scene_line(message, plan.scene_file.string()));
+  std::vector<std::string> named;
   for (const StudyVariable& variable : plan.variables) {
     for (const StudyKey& key : variable.keys) {
-      // as the key is written in messages, a number of a [[section]] apart
-      const std::string last = key.key.substr(key.key.rfind('.') + 1);
-      if (found.find(last) == found.npos) continue;
-      const std::string rest = without_scene_line(message, last, plan.scene_file.string());
-      if (rest.starts_with(key.key + ": ")) return InputError(fmt::format("{}.{}", variable.place, rest));
-      return InputError(fmt::format("{}.{}: {}", variable.place, key.key, rest));
+      const std::string place = fmt::format("{}.{}", variable.place, key.key);
+      for (const std::string& written : {key.key, without_number(key.key)}) {
+        if (!is_of_key(rest, written)) continue;
+        named.push_back(place + (rest.starts_with(written) ? rest.substr(written.size()) : ": " + rest));
+        break;
+      }
     }
   }
-  return InputError(fmt::format("{}: {}", plan.file.string(), message));
+  if (named.size() == 1) return InputError(named.front());
+  return InputError(fmt::format("{}: {}", plan.file.string(), named.empty() ? message : rest));
 }
 
 }  // namespace
@@ -173,7 +195,11 @@ const std::vector<const MeasureKind*>& study_measures() {
 
 StudyRuns::StudyRuns(const StudyPlan& plan, const SceneParameters& scene, StudyRunsOptions options)
     : plan_(plan), scene_(scene), options_(std::move(options)) {
-  deck_cut_off_ = plan.deck_cut_off ? *plan.deck_cut_off : cut_off_of(scene);
+  if (plan.deck_cut_off) {
+    deck_cut_off_ = plan.deck_cut_off;
+  } else if (!varies_decks(plan, scene)) {
+    deck_cut_off_ = cut_off_of(scene);
+  }
 }
 
 void StudyRuns::bind_folder() const {
@@ -189,11 +215,12 @@ void StudyRuns::bind_folder() const {
       }
     }
   }
+  const std::string cut_off =
+      deck_cut_off_ ? fmt::format("{} Hz", *deck_cut_off_) : std::string("the cut-off of each run's decks");
   check_same_scene(
       plan_.scene_file,
-      scene_.text + fmt::format("\n# vsi study: decks judged at all their nodes, acceleration low-passed at {} Hz",
-                                deck_cut_off_),
-      files, options_.folder);
+      scene_.text + "\n# vsi study: decks judged at all their nodes, acceleration low-passed at " + cut_off, files,
+      options_.folder);
 }
 
 std::vector<KeyChange> StudyRuns::changes_of(const StudyPoint& point) const {
@@ -203,7 +230,7 @@ std::vector<KeyChange> StudyRuns::changes_of(const StudyPoint& point) const {
       if (key.key == "train.speed") changes.push_back({"train.speed_kmh", ""});
       if (key.key == "train.speed_kmh") changes.push_back({"train.speed", ""});
       if (key.key == "train.consist") changes.insert(changes.end(), {{"train.vehicle", ""}, {"train.count", ""}});
-      changes.push_back({key.key, in_scene(key, point[j])});
+      changes.push_back({key.key, in_scene(plan_.variables[j], key, point[j])});
     }
   }
   return changes;
@@ -229,8 +256,8 @@ std::vector<RunRow> StudyRuns::rows_of(const std::vector<StudyPoint>& points) co
   return runs;
 }
 
-/// The scene as it was when the study began, with the values of a point, and what is judged recorded.
-SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
+/// The scene as it was when the study began, with the values of a point.
+SceneParameters StudyRuns::changed_scene(const StudyPoint& point) const {
   SceneParameters scene = read_scene(plan_.scene_file, changes_of(point));
   if (!scene.text.starts_with(scene_.text)) {
     throw input_error(plan_.scene_file.string(), "another scene than when the study began", "the same scene");
@@ -238,9 +265,24 @@ SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
   for (std::size_t j = 0; j < point.size(); ++j) {
     scene.name += fmt::format(", {} = {}", plan_.variables[j].name, point[j].cell());
   }
+  return scene;
+}
+
+/// A run asks twice, for its scene and for its row: frequencies of an imported bridge take their time.
+double StudyRuns::cut_off_at(const StudyPoint& point) const {
+  if (deck_cut_off_) return *deck_cut_off_;
+  const std::string name = name_of(point);
+  if (last_cut_off_.first != name) last_cut_off_ = {name, cut_off_of(changed_scene(point))};
+  return last_cut_off_.second;
+}
+
+/// With what is judged recorded.
+SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
+  SceneParameters scene = changed_scene(point);
   record_what_is_judged(scene);
   scene.text += "# vsi study: what is judged is recorded";
-  if (follow_deck(scene, deck_cut_off_)) scene.text += fmt::format(", output.deck_cut_off = {}", deck_cut_off_);
+  const double cut_off = cut_off_at(point);
+  if (follow_deck(scene, cut_off)) scene.text += fmt::format(", output.deck_cut_off = {}", cut_off);
   scene.text += "\n";
   return scene;
 }
@@ -248,7 +290,9 @@ SceneParameters StudyRuns::scene_of(const StudyPoint& point) const {
 void StudyRuns::check(const std::vector<StudyPoint>& points) const {
   for (const StudyPoint& point : points) {
     try {
-      require_measure(plan_, scene_of(point));
+      SceneParameters scene = changed_scene(point);
+      record_what_is_judged(scene);
+      require_measure(plan_, scene);
     } catch (const InputError& wrong) {
       throw with_plan_line(wrong, plan_);
     }
@@ -273,7 +317,7 @@ PooledRun StudyRuns::pooled_at(const StudyPoint& point) const {
   const auto text = [this, row, point](const report::Headline& headline, const RunSummary& summary,
                                        const fs::path& results) {
     assess::RunWindow window = judged_window(scene_of(point));
-    window.deck_cut_off = deck_cut_off_;
+    window.deck_cut_off = cut_off_at(point);
     const assess::RunMeasures measures = assess::run_measures(read_results(results), window);
     return fmt::format("{}{}{},{:.6g},{}\n", row.begin, summary.complete ? 1 : 0, measure_cells(measures),
                        headline.simulated_time, summary.complete ? "" : message_cell(summary.message));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "railtab/runtime/assessment/measure_kind.hpp"
@@ -72,13 +73,16 @@ class StudyRuns {
   /// Empty where the run is not finished.
   [[nodiscard]] std::optional<StudyRow> find_row(const StudyPoint& point) const;
   [[nodiscard]] std::string name_of(const StudyPoint& point) const { return row_of(point).name; }
-  [[nodiscard]] double deck_cut_off() const noexcept { return deck_cut_off_; }  ///< [Hz]
+  /// [Hz]; none where the plan varies the decks: each run then has that of its own.
+  [[nodiscard]] std::optional<double> deck_cut_off() const noexcept { return deck_cut_off_; }
 
  private:
   [[nodiscard]] RunRow row_of(const StudyPoint& point) const;
   /// Of these points, each run once.
   [[nodiscard]] std::vector<RunRow> rows_of(const std::vector<StudyPoint>& points) const;
   [[nodiscard]] std::vector<KeyChange> changes_of(const StudyPoint& point) const;
+  [[nodiscard]] SceneParameters changed_scene(const StudyPoint& point) const;
+  [[nodiscard]] double cut_off_at(const StudyPoint& point) const;
   [[nodiscard]] SceneParameters scene_of(const StudyPoint& point) const;
   [[nodiscard]] RunPool pool(const std::function<void(double)>& progress) const;
   [[nodiscard]] PooledRun pooled_at(const StudyPoint& point) const;
@@ -86,7 +90,8 @@ class StudyRuns {
   const StudyPlan& plan_;
   const SceneParameters& scene_;
   StudyRunsOptions options_;
-  double deck_cut_off_ = 30.0;
+  std::optional<double> deck_cut_off_;
+  mutable std::pair<std::string, double> last_cut_off_;  ///< name of the run, and its cut-off
 };
 
 }  // namespace railtab::vsi
