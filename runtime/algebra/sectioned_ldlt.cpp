@@ -219,7 +219,8 @@ void SectionedLdlt::store(const Numbers& numbers) {
   for (const Strip& strip : strip_) {
     for (int j = 0; j < strip.columns; ++j) {
       const int* const unknown = &layout_->unknown[index(slot_[index(strip.slot + j)]) * side_by_side];
-      // A solution is zero where a section lacks the unknown: SectionedProduct leaves what it will in a load there.
+      // Where a section lacks the unknown, its solution is zero. The load there is not: SectionedProduct takes entries
+      // as alike in all sections.
       for (int k = 0; k < side_by_side; ++k) {
         if (unknown[k] < 0) inverse_D_[index(strip.first + j)][k] = 0.0;
       }

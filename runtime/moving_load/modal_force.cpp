@@ -94,7 +94,7 @@ ModalForce modal_force(const ModalDeck& deck, const AxleTrain& train) {
       add_axle(deck, b - behind, b - behind - inside * h, train.load[k], f1, d1);
     }
     for (std::size_t n = 0; n < modes; ++n) force.cubic.push_back(hermite(f0[n], d0[n], f1[n], d1[n], h));
-    double bound0 = 0.0, bound1 = 0.0;
+    double bound = 0.0;
     for (std::size_t n = modes; n < all; ++n) {
       const auto row = static_cast<Eigen::Index>(n);
       const double flexibility = 1.0 / (deck.omega[row] * deck.omega[row]);
@@ -104,10 +104,12 @@ ModalForce modal_force(const ModalDeck& deck, const AxleTrain& train) {
         for (std::size_t e = 0; e < 2; ++e) force.other_turn[p][e][j] += end_slope[e][row] * q[j];
       }
       force.other.push_back(q);
-      bound0 += std::abs(f0[n]) * flexibility * deck.largest_shape[row];
-      bound1 += std::abs(f1[n]) * flexibility * deck.largest_shape[row];
+      // a cubic is nowhere larger than its control values
+      const double largest = std::max(
+          {std::abs(f0[n]), std::abs(f0[n] + h * d0[n] / 3.0), std::abs(f1[n] - h * d1[n] / 3.0), std::abs(f1[n])});
+      bound += largest * flexibility * deck.largest_shape[row];
     }
-    force.other_bound[p] = std::max(bound0, bound1);
+    force.other_bound[p] = bound;
   }
   return force;
 }

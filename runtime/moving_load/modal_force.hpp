@@ -20,7 +20,7 @@ struct ModalForce {
   /// What the deck's other modes do without inertia, likewise:
   int others = 0;
   std::vector<Cubic> other;                      ///< [piece·others + mode]: q = F/ω² [m kg^1/2]
-  std::vector<double> other_bound;               ///< of each piece: Σ |q| times the mode's largest shape [m]
+  std::vector<double> other_bound;               ///< of each piece: bound of Σ |q| times the mode's largest shape [m]
   std::vector<std::array<Cubic, 2>> other_turn;  ///< of each piece: ∂w/∂x at x = 0 and at the deck's length
   [[nodiscard]] std::size_t pieces() const noexcept { return start.size() - 1; }
 };

@@ -1,6 +1,7 @@
 #include "railtab/runtime/moving_load/speed_range.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 
 #include "railtab/runtime/moving_load/speed_search.hpp"
@@ -28,11 +29,14 @@ std::vector<TrainResponse> train_responses(const ModalDeck& deck, const std::vec
                                            const SpeedRange& range, int threads,
                                            const std::function<void(double)>& finished) {
   std::vector<TrainResponse> responses(trains.size());
-  std::vector<ModalForce> forces(trains.size());
+  std::vector<ModalForce> forces(trains.size());  // made by a train's first passage, freed by its last
+  std::vector<std::once_flag> made(trains.size());
   std::mutex reporting;
   std::size_t done = 0;
   const bool refined = range.speeds.empty();
   const std::size_t passages = refined ? 1 : range.speeds.size(), count = trains.size() * (passages + 1);
+  std::vector<std::atomic<std::size_t>> left(trains.size());  // passages of each train
+  for (std::atomic<std::size_t>& of_train : left) of_train = passages;
   const auto report = [&] {
     const std::lock_guard lock(reporting);
     ++done;
@@ -42,7 +46,6 @@ std::vector<TrainResponse> train_responses(const ModalDeck& deck, const std::vec
     responses[t].train = t;
     responses[t].standing = largest_static_deflection(deck, trains[t]);
     if (!trains[t].only_static && !refined) {
-      forces[t] = modal_force(deck, trains[t]);
       responses[t].passages.resize(passages);
     }
     report();
@@ -53,7 +56,9 @@ std::vector<TrainResponse> train_responses(const ModalDeck& deck, const std::vec
       if (refined) {
         responses[t].passages = search_critical_speeds(deck, trains[t], range.low, range.high);
       } else {
+        std::call_once(made[t], [&] { forces[t] = modal_force(deck, trains[t]); });
         responses[t].passages[i] = train_passage(deck, forces[t], range.speeds[i]);
+        if (--left[t] == 0) forces[t] = {};
       }
     }
     report();

@@ -34,6 +34,7 @@ struct Candidate {
   int point = 0;
   std::vector<ModalMotion> motion;
   const ModalForce::Cubic* other = nullptr;  // of the other modes, with a displacement
+  double duration = 0.0;                     // of the piece [s], beyond which `other` does not hold
 };
 
 class Passage {
@@ -54,6 +55,7 @@ class Passage {
 
   /// Through one piece, from `start` on and `duration` [s] long.
   void advance(const Piece& piece, double start, double duration) {
+    duration_ = duration;
     const int steps = std::max(1, static_cast<int>(std::ceil(duration / longest_step_)));
     const double step = duration / steps;
     for (int n = 0; n < modes_; ++n) {
@@ -153,6 +155,7 @@ class Passage {
     best.point = static_cast<int>(point);
     best.motion = motion_;
     best.other = other;
+    best.duration = duration_;
   }
 
   /// The candidate's motion u and its derivatives: ∂u/∂t, ∂²u/∂t², ∂u/∂x, ∂²u/∂x².
@@ -195,10 +198,12 @@ class Passage {
     constexpr int rounds = 6;
     const double x0 = deck_.point_x[index(best.point)], interval = deck_.length() / (deck_.points_on_line - 1);
     double ahead = 0.0, x = x0;
+    const double earliest = best.other ? std::max(-longest_step_, -best.tau) : -longest_step_;
+    const double latest = best.other ? std::min(longest_step_, best.duration - best.tau) : longest_step_;
     const Local sample = local(best, ahead, x);
     Local at = sample;
     for (int i = 0; i < rounds; ++i) {
-      if (!jumps_ && at.u * at.tt < 0.0) ahead = std::clamp(ahead - at.t / at.tt, -longest_step_, longest_step_);
+      if (!jumps_ && at.u * at.tt < 0.0) ahead = std::clamp(ahead - at.t / at.tt, earliest, latest);
       at = local(best, ahead, x);
       if (at.u * at.xx < 0.0) {
         x = std::clamp(x - at.x / at.xx, std::max(0.0, x0 - interval), std::min(deck_.length(), x0 + interval));
@@ -210,7 +215,7 @@ class Passage {
   }
 
   const ModalDeck& deck_;
-  double speed_, longest_step_ = 0.0;
+  double speed_, longest_step_ = 0.0, duration_ = 0.0;  // duration_: of the present piece [s]
   bool jumps_ = false;
   int modes_;
   std::vector<ModalMotion> motion_;

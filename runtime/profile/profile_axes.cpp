@@ -30,16 +30,16 @@ std::size_t top_of(const std::vector<OutlinePoint>& points) {
   return static_cast<std::size_t>(std::min_element(points.begin(), points.end(), higher) - points.begin());
 }
 
-/// The first point of a range after which the outline is not steeper than 75 degrees over a millimetre: beyond the face
-/// of a rim at its beginning, which may be higher than the flange.
+/// The first point of a range after which the outline is not steeper than 80 degrees over a millimetre: beyond the face
+/// of a rim at its beginning, which may be higher than the flange, whose flank reaches 75 degrees.
 template <class Point>
 Point end_of_face(Point begin, Point end) {
   constexpr double length = 1 * mm;  // far more than points scatter by
-  constexpr double tan75 = 3.7320508075688772;
+  constexpr double tan80 = 5.671281819617709;
   for (; begin != end; ++begin) {
     const auto next = std::find_if(
         begin, end, [&](const OutlinePoint& p) { return std::hypot(p.y - begin->y, p.z - begin->z) >= length; });
-    if (next == end || std::abs(next->z - begin->z) < tan75 * std::abs(next->y - begin->y)) break;
+    if (next == end || std::abs(next->z - begin->z) < tan80 * std::abs(next->y - begin->y)) break;
   }
   return begin;
 }
@@ -50,7 +50,7 @@ bool deeper(const OutlinePoint& a, const OutlinePoint& b) { return std::abs(a.z)
 OutlinePoint flange_tip(const std::vector<OutlinePoint>& points) {
   const auto begin = end_of_face(points.begin(), points.end());
   const auto end = end_of_face(points.rbegin(), std::make_reverse_iterator(begin)).base();
-  return begin == end ? OutlinePoint{} : *std::max_element(begin, end, deeper);
+  return *std::max_element(begin, end, deeper);
 }
 
 /// The field side of a wheel rises, or has the lip of a hollow tread.
@@ -207,10 +207,12 @@ void extend_gauge_face(const std::string& file, ProfilePoints& outline) {
   constexpr double tan30 = 0.5773502691896258;
   if (std::abs(slope) > tan30) return;
   const auto corner = gauge_corner(points);
-  const auto face_y = [&](double z) {
-    if (!corner) return end.y + slope * (z - end.z);
+  const auto on_corner = [&](double z) {
     const double above = std::max(corner->z - z, 0.0);  // below its centre, the face is vertical
     return corner->y - std::sqrt(corner->radius * corner->radius - above * above);
+  };
+  const auto face_y = [&](double z) {  // from the last point on, which is off the corner's circle by its scatter
+    return end.y + (corner ? on_corner(z) - on_corner(end.z) : slope * (z - end.z));
   };
   std::vector<OutlinePoint> face;
   for (double z = top + wanted; z > end.z + 0.5 * step; z -= step) face.push_back({face_y(z), z, end.line});

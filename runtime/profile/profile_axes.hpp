@@ -9,7 +9,7 @@ namespace railtab {
 
 /// Brings points of either direction, side and sign into the frame of a right wheel or rail, as far as the shape tells
 /// for sure, with a note for each change: from the track centre to the field side; z down; a wheel's flange at y < 0.
-/// A wheel's rim faces, steeper than 75 degrees at the outline's ends, are no flange. A rail's side does not show in
+/// A wheel's rim faces, steeper than 80 degrees at the outline's ends, are no flange. A rail's side does not show in
 /// its shape; a head that leans to the field side gets a note. A gauge face that was measured to at least 10 mm below
 /// the top, where it stands at more than 60 degrees, is continued to 17 mm: where its last 3 mm are an arc of 8 to 25
 /// mm, along that arc until it is vertical, else straight.

@@ -140,10 +140,11 @@ FragilityFit fragility_with_bounds(const std::vector<double>& intensities, const
   fit.curve = fit_fragility(levels);
   // runs of one sample depend on each other: no more than samples are independent
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    const auto independent =
-        std::count_if(samples.begin(), samples.end(), [&](const FragilitySample& s) { return s.runs[i] > 0; });
-    const double share = static_cast<double>(levels[i].exceeded) / static_cast<double>(levels[i].runs);
-    fit.observed.push_back(wilson_interval_of_share(share, static_cast<std::size_t>(independent), options.confidence));
+    double squares = 0.0;
+    for (const FragilitySample& s : samples) squares += static_cast<double>(s.runs[i]) * static_cast<double>(s.runs[i]);
+    const auto runs = static_cast<double>(levels[i].runs), share = static_cast<double>(levels[i].exceeded) / runs;
+    const auto independent = static_cast<std::size_t>(runs * runs / squares);  // the samples, if all have as many runs
+    fit.observed.push_back(wilson_interval_of_share(share, independent, options.confidence));
   }
   if (!fit.curve || samples.size() < 2) return fit;
   std::vector<double> medians, deviations;

@@ -26,7 +26,7 @@ class Responses {
     for (double& value : values_) value -= mean_;
   }
   [[nodiscard]] double mean() const { return mean_; }
-  /// Whether a variance is more than rounding of one value.
+  /// Whether the responses of A and B are more than one value, whose variance would be rounding alone.
   [[nodiscard]] bool vary(const Rows& rows) const {
     const double one = a(rows.front());
     return std::any_of(rows.begin(), rows.end(), [&](std::size_t k) { return a(k) != one || b(k) != one; });
@@ -101,6 +101,10 @@ SobolIndices sobol_indices(const SobolOptions& options, const ResponseOfUnitPoin
       first[i].push_back(responses.first(i, drawn));
       total[i].push_back(responses.total(i, drawn));
     }
+  }
+  if (options.variables > 0 && first.front().empty()) {
+    throw ComputationError(fmt::format(
+        "importance: none of {} bootstrap replicates has variance; expected more samples", options.replicates));
   }
   for (std::size_t i = 0; i < options.variables; ++i) {
     indices.first.push_back(replicate_interval(responses.first(i, rows), first[i], options.confidence));

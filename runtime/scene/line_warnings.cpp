@@ -176,7 +176,7 @@ void without_brakes(const SceneCase& at, Warnings& list) {
     list.push_back(fmt::format(
         "train.speed_file {} changes the speed by forces on the car bodies at their centres of gravity, which load "
         "the rear of a train that brakes; brakes and traction are [[load]]s: My on every wheelset, positive for "
-        "brakes, and the opposite of their sum on the bogie that carries the brakes",
+        "brakes, and on each bogie the opposite of the sum over its wheelsets",
         file));
   } else if (!on_others) {
     list.push_back(fmt::format(
@@ -208,7 +208,7 @@ const Warning deviation_zero{"it is 0", [](const SceneCase& at, Warnings& list) 
                              }};
 const Warning deviation_outside_run{"no wheel runs over the spans that turn", spans_beyond_run};
 const Warning irregularity_zero{
-    "the record is zero throughout, or the mean of z_left and z_right is with contact.normal = \"rigid\"",
+    "the record is zero throughout; with contact.normal = \"rigid\", the mean of z_left and z_right is zero throughout",
     [](const SceneCase& at, Warnings& list) {
       if (!at.scene.irregularity) return;
       const std::string why = ineffective(at);

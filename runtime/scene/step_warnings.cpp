@@ -35,9 +35,9 @@ struct CurvePoint {
   double value, slope;
 };
 
-/// What the rms slope of a curve loses, from 0 to 1, where only points one travel apart are known of it: of a wave of
-/// length L it leaves |sin(π travel/L)|/(π travel/L). The means are over places in the golden ratio, which resonate
-/// with no wave. 0 where the stretch is shorter than the travel.
+/// What the rms slope of a curve loses, from 0 to 1, where only points one travel [m] apart are known of it: of a wave
+/// of length L it leaves |sin(π travel/L)|/(π travel/L). The means are over places at multiples of the golden ratio,
+/// modulo the stretch: they are nearly even and keep step with no wave. 0 where the stretch is shorter than the travel.
 template <class Curve>
 double lost_slope(const Curve& curve, const Interval& stretch, double travel) {
   constexpr int places = 4000;
@@ -168,7 +168,8 @@ void add_irregularity(const SceneCase& at, StepLimits& limits) {
 const Warning steps_too_long{
     "in a step the train travels more than half the distance between sleepers, a quarter of the shortest wave of a "
     "random track or of a polygon, or half a flat (a quarter with contact.normal = \"rigid\"); points one step apart "
-    "lose more than 5 % of the rms slope of irregularity.file or wheel.file; it is longer than a tenth of a span's "
+    "lose more than 5 % of the rms slope of irregularity.file or wheel.file; the step is longer than a tenth of a "
+    "span's "
     "first natural period",
     [](const SceneCase& at, Warnings& list) {
       StepLimits limits(at);

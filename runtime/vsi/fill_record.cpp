@@ -98,6 +98,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   if (!model.structure) return;
   record.nodes.resize(model.structure->nodes.size());
   const StructureModel& structure = *model.structure;
+  // motions that are sums need unknowns of other nodes, too
   if (structure.summed_nodes.size() > 0) static_cast<void>(state.structure.whole());
   for (std::size_t n = 0; n < record.nodes.size(); ++n) {
     fill_node(structure, n, state.structure.at(structure.nodes[n].dof), record.nodes[n]);

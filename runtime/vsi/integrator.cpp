@@ -192,7 +192,8 @@ const StepOperators& Integrator::operators(int level, double end) {
 
 void Integrator::reinitialise(VsiState& state) {
   contact_law_->reinitialise();
-  // What a resumed run reads is rounded when it is brought into the order of the next step.
+  // A resumed run begins with the motion in the unknowns' own order. Bringing it into the sections' order rounds it, so
+  // this run does the same.
   static_cast<void>(state.structure.whole());
   if (force_rule_.may_keep_energy()) evaluate_contact_at(model_, state);
   if (account_ || (!energy_ && !contact_energy_) || model_.normal_contact != NormalContact::hertz) return;

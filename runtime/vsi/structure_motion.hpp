@@ -19,7 +19,7 @@ struct OrderedMotion {
 
 /// Motion of a structure at the end of a step, and the contacts' loads on it. Steps of a structure in sections leave
 /// the motion of the active unknowns in the sections' order, in which the next step goes on; whoever asks for it gets
-/// it in the unknowns' own order. Also to read, not for two threads at a time.
+/// it in the unknowns' own order. Reading may convert it: two threads may not read one motion at a time.
 class StructureMotion {
  public:
   explicit StructureMotion(Eigen::Index dofs = 0) : own_order_(dofs) {}
@@ -33,7 +33,7 @@ class StructureMotion {
   /// The loads of all unknowns and the motion of these; that of others is of an earlier step, in a build with
   /// assertions not a number. @param unknowns some perhaps held
   [[nodiscard]] const LinearMotion& at(std::span<const int> unknowns) const;
-  /// Loads alone, to be read or changed.
+  /// The loads, to be read or changed. Not to be asked for motion: that may be of an earlier step.
   [[nodiscard]] LinearMotion& loads() noexcept { return own_order_; }
   [[nodiscard]] const LinearMotion& loads() const noexcept { return own_order_; }
   /// Sets displacement, velocity and acceleration of one unknown.

@@ -176,7 +176,8 @@ class StructureResponse {
 
   HhtScheme scheme_{};
   Eigen::SparseMatrix<double> effective_;  ///< K̄
-  std::unique_ptr<Divisible> divisible_;   ///< null where the unknowns have no lines
+  /// Null where the unknowns have no lines, or a factor in sections was not accurate.
+  std::unique_ptr<Divisible> divisible_;
   std::unique_ptr<SubstitutionFactor> factor_;
   std::unique_ptr<SectionedProduct> product_;  ///< null: not in sections
   DofRange active_;

@@ -88,8 +88,8 @@ bool acts_on_pair(std::string_view option, const Settings& settings, const std::
   return !built_in_rail || !is_standard_profile(ProfileKind::wheel, profile_of(settings, "wheel", folder));
 }
 
-/// A default that acts on the profiles of some pairs is none of the others. One that acts on no pair stays, for the
-/// checks of `tablegen geometry` to reject, as do those that a pair names itself.
+/// Drops a default from pairs on whose profiles it does not act, if it acts on those of another pair. One that acts on
+/// no pair stays, for the checks of `tablegen geometry` to reject, as do those that a pair names itself.
 void keep_defaults_that_act(const Settings& defaults, const std::filesystem::path& folder,
                             std::vector<Settings>& pairs) {
   for (const char* option : {"rail-inclination", "smoothing"}) {

@@ -15,8 +15,8 @@ struct BatchPair {
 
 /// Reads a TOML file with one [[pair]] per table and an optional [defaults]; the keys are the options of
 /// `tablegen geometry`, their values numbers, texts as on the command line, or [low, high] for intervals. Profile files
-/// and outputs are relative to the list. A default rail inclination is none of pairs whose rail is a file, a default
-/// smoothing none of built-in profiles, where it acts on other pairs.
+/// and outputs are relative to the list. If it acts on another pair, a default rail inclination is dropped from pairs
+/// whose rail is a file, and a default smoothing from pairs of built-in profiles.
 /// @throws InputError naming file, line and key: unknown keys, wrong types, no wheel, rail or output, two pairs with
 /// one output.
 [[nodiscard]] std::vector<BatchPair> read_batch_list(const std::filesystem::path& file);

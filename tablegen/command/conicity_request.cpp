@@ -161,7 +161,11 @@ void set_pair(const TableCommandLine& line, ConicityRequest& request) {
   if (line.chosen("half-spacing")) {
     line.reject({"gauge", "flange-back"}, "no gauge and no flange-back distance beside --half-spacing");
   }
-  errors_chosen(line) ? require_rail_to_incline(line) : require_options_of_profiles(line);
+  if (errors_chosen(line)) {
+    require_rail_to_incline(line);  // built-in profiles with errors are smoothed, too
+  } else {
+    require_options_of_profiles(line);
+  }
   const double noise = requested_noise(line);
   request.pair = requested_wheelset(line, noise);
   request.name = names_of(line, request.pair->right);

@@ -101,8 +101,8 @@ class FmuAgainstRun : public VsiCommand {
   // and where they are at the times of the records (by_time).
   void record_run() const {
     SceneParameters scene = read_scene(folder_ / "scene.toml");
-    // Without checkpoints, at which a run takes up its motion in the unknowns' own order: an ulp of a displacement is
-    // 1e-11 of the largest acceleration.
+    // Without checkpoints: at these a run rearranges its motion, and the rounding of a displacement changes
+    // accelerations by 1e-11 of the largest.
     scene.integration.reinitialise_every = std::numeric_limits<long>::max();
     const VsiModel model = build_model(scene);
     VsiState state(model);

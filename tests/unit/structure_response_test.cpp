@@ -304,7 +304,8 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
   }
 }
 
-// Floats do where elements are as long as the deck is high; a hundred times shorter ones are factored with doubles.
+// Single precision suffices for elements of 1 m and 0.32 m in steps of 0.5 ms; shorter ones, or steps of 5 ms, take a
+// double-precision factor.
 TEST(StructureResponse, ShortElementsInLongStepsAreNotRoundedToFloats) {
   TrackParameters track;
   track.length_before = track.length_after = 40.0;
@@ -316,6 +317,7 @@ TEST(StructureResponse, ShortElementsInLongStepsAreNotRoundedToFloats) {
     const HhtScheme scheme{.alpha = -0.05, .time_step = time_step};
     const StructureResponse response(structure, scheme);
     EXPECT_EQ(response.in_sections(), divides) << elements << " elements, " << time_step << " s";
+    if (!divides) continue;
     StructureModel unlike = structure;
     unlike.dof_line.clear();
     const StructureResponse whole(unlike, scheme);

@@ -436,7 +436,7 @@ std::string peak_text(const StudyPlan& plan, const PeakSearch& peak) {
                                   [](const auto& p) { return std::isfinite(p.second); });
     return fmt::format("{}: runs end early {} {} = {}{}{}: no largest value\n", plan.measure, all ? "from" : "at",
                        v.name, v.values[*first].cell(), v.unit == "-" ? "" : " " + v.unit,
-                       all ? " on" : ", not at all higher values");
+                       all ? " on, as far as computed" : ", but not at every higher value computed");
   }
   return fmt::format("largest {}: {:.6g} at {} = {} {}, {} of {} points of the grid{}\n", plan.measure,
                      peak.values.at(peak.highest), v.name, v.values[peak.highest].cell(), v.unit == "-" ? "" : v.unit,

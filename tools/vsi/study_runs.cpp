@@ -80,11 +80,9 @@ std::vector<std::string_view> vehicles_of(std::string_view train) {
 }
 
 /// Whether a variable may change the natural frequencies of the decks, and with them their cut-off.
-bool varies_decks(const StudyPlan& plan, const SceneParameters& scene) {
-  const bool bridge = !scene.spans.empty() || scene.structure.files.given();
-  const auto of_deck = [&](const StudyKey& key) {
-    return key.key.starts_with("bridge.") || key.key.starts_with("structure.") ||
-           (bridge && key.key.starts_with("track."));
+bool varies_decks(const StudyPlan& plan) {
+  const auto of_deck = [](const StudyKey& key) {
+    return key.key.starts_with("bridge.") || key.key.starts_with("structure.") || key.key.starts_with("support.");
   };
   return std::any_of(plan.variables.begin(), plan.variables.end(), [&](const StudyVariable& variable) {
     return std::any_of(variable.keys.begin(), variable.keys.end(), of_deck);
@@ -197,7 +195,7 @@ StudyRuns::StudyRuns(const StudyPlan& plan, const SceneParameters& scene, StudyR
     : plan_(plan), scene_(scene), options_(std::move(options)) {
   if (plan.deck_cut_off) {
     deck_cut_off_ = plan.deck_cut_off;
-  } else if (!varies_decks(plan, scene)) {
+  } else if (!varies_decks(plan)) {
     deck_cut_off_ = cut_off_of(scene);
   }
 }
@@ -322,7 +320,14 @@ PooledRun StudyRuns::pooled_at(const StudyPoint& point) const {
     return fmt::format("{}{}{},{:.6g},{}\n", row.begin, summary.complete ? 1 : 0, measure_cells(measures),
                        headline.simulated_time, summary.complete ? "" : message_cell(summary.message));
   };
-  return {row.name, [this, point] { return scene_of(point); }, text};
+  const auto scene = [this, point] {
+    try {
+      return scene_of(point);
+    } catch (const InputError& wrong) {
+      throw with_plan_line(wrong, plan_);
+    }
+  };
+  return {row.name, scene, text};
 }
 
 int StudyRuns::make(const std::vector<StudyPoint>& points, const std::function<void(double)>& progress) {
