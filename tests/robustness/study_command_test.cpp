@@ -39,6 +39,10 @@ class StudyCommand : public VsiCommand {
     content << std::ifstream(folder_ / name).rdbuf();
     return content.str();
   }
+  void expect_plan_rejected(const std::string& plan, const std::string& message) const {
+    write("plan.toml", plan);
+    expect_rejected("study plan.toml -o out", message);
+  }
   [[nodiscard]] nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(text(name)); }
   /// Cells of a table, the header first.
   [[nodiscard]] std::vector<std::vector<std::string>> table(const std::string& name) const {
@@ -590,88 +594,89 @@ TEST_F(StudyCommand, KeysFollowATableOfTheVariable) {
 }
 
 TEST_F(StudyCommand, RejectsWrongPlans) {
-  const auto rejected = [&](const std::string& plan, const std::string& message) {
-    write("plan.toml", plan);
-    expect_rejected("study plan.toml -o out", message);
-  };
   const std::string begin = "scene = \"scene.toml\"\n[[vary]]\n";
-  rejected(begin + "key = \"train.sped\"\nvalues = [1]\n",
-           "plan.toml:2: vary[1].train.sped: unknown key 'train.sped'; did you mean 'train.speed'?");
-  rejected(begin + "key = \"train.speed_kmh\"\nvalues = [100, 9000]\n",
-           "plan.toml:2: vary[1].train.speed_kmh: found 9000, expected");
+  expect_plan_rejected(begin + "key = \"train.sped\"\nvalues = [1]\n",
+                       "plan.toml:2: vary[1].train.sped: unknown key 'train.sped'; did you mean 'train.speed'?");
+  expect_plan_rejected(begin + "key = \"train.speed_kmh\"\nvalues = [100, 9000]\n",
+                       "plan.toml:2: vary[1].train.speed_kmh: found 9000, expected");
   std::string many = "scene = \"scene.toml\"\n";
   for (const char* key : {"train.speed_kmh", "contact.friction"}) {
     many += std::string("[[vary]]\nkey = \"") + key + "\"\nrange = \"0.1:0.9:1e-4\"\n";
   }
-  rejected(many,
-           "plan.toml: [[vary]]: found 6.4016e+07 points of all values together, times sampling.samples, expected "
-           "at most 1000000");
-  rejected(begin + "key = \"train.speed_kmh\"\nrange = \"1:2\"\n",
-           "plan.toml:4: vary[1].range: found the text \"1:2\", expected");
-  rejected(begin + "key = \"train.speed_kmh\"\nvalus = [1]\n",
-           "plan.toml:4: unknown key 'vary[1].valus'; did you mean 'vary[1].values'?");
+  expect_plan_rejected(
+      many,
+      "plan.toml: [[vary]]: found 6.4016e+07 points of all values together, times sampling.samples, expected "
+      "at most 1000000");
+  expect_plan_rejected(begin + "key = \"train.speed_kmh\"\nrange = \"1:2\"\n",
+                       "plan.toml:4: vary[1].range: found the text \"1:2\", expected");
+  expect_plan_rejected(begin + "key = \"train.speed_kmh\"\nvalus = [1]\n",
+                       "plan.toml:4: unknown key 'vary[1].valus'; did you mean 'vary[1].values'?");
   write("plan.toml", "scene = \"scene.toml\"\n[[vary]]\nkey = \"train.sped\"\nvalues = [1]\n");
   expect_rejected("study plan.toml --count -o out", "unknown key 'train.sped'");
-  rejected(begin + "key = \"assessment.seeds\"\nvalues = [1, 2]\n",
-           "vary[1].key: found 'assessment.seeds', expected a key that runs of a study depend on");
-  rejected(begin +
-               "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 0.05\nat_least = 0.5\n"
-               "at_most = 0.2\n",
-           "vary[1].at_most: found 0.2, expected more than at_least = 0.5");
-  rejected(begin + "key = \"train.speed_kmh\"\nvalues = []\n",
-           "plan.toml:4: vary[1].values: found an empty list, expected a list, [0.1, 0.2, 0.3]");
-  rejected(
+  expect_plan_rejected(begin + "key = \"assessment.seeds\"\nvalues = [1, 2]\n",
+                       "vary[1].key: found 'assessment.seeds', expected a key that runs of a study depend on");
+  expect_plan_rejected(
+      begin +
+          "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 0.05\nat_least = 0.5\n"
+          "at_most = 0.2\n",
+      "vary[1].at_most: found 0.2, expected more than at_least = 0.5");
+  expect_plan_rejected(begin + "key = \"train.speed_kmh\"\nvalues = []\n",
+                       "plan.toml:4: vary[1].values: found an empty list, expected a list, [0.1, 0.2, 0.3]");
+  expect_plan_rejected(
       begin +
           "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 0.05\n[sampling]\nsamples = 20\n"
           "[probability]\nmethod = \"fragility\"\nmeasure = \"wheel_force\"\nlimit = 1\nintensity = \"a\"\n",
       "probability.intensity: found no [[vary]] with values or a range");
-  rejected(begin + "key = \"train.speed_kmh\"\nvalues = [1, 1.0]\n", "plan.toml:4: vary[1].values: found 1 twice");
-  rejected(begin + "key = \"irregularity.seed\"\nvalues = [1.5]\n", "found 1.5, expected an integer");
-  rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n",
-           "plan.toml:1: sampling: found nothing");
-  rejected(
+  expect_plan_rejected(begin + "key = \"train.speed_kmh\"\nvalues = [1, 1.0]\n",
+                       "plan.toml:4: vary[1].values: found 1 twice");
+  expect_plan_rejected(begin + "key = \"irregularity.seed\"\nvalues = [1.5]\n", "found 1.5, expected an integer");
+  expect_plan_rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n",
+                       "plan.toml:1: sampling: found nothing");
+  expect_plan_rejected(
       begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\nstd = 5\n[sampling]\nsamples = 9\n",
       "contact.friction: found");
-  rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\n", "found neither std nor cov");
-  rejected("scene = \"none.toml\"\n[[vary]]\nkey = \"contact.friction\"\nvalues = [0.1]\n",
-           "plan.toml:1: scene: found no file none.toml");
-  rejected("scene = \".\"\n[[vary]]\n",
-           "plan.toml:1: scene: found a folder ., expected the file of a scene, relative to the plan");
-  rejected("scene = \"\"\n[[vary]]\n", "plan.toml:1: scene: found the text \"\", expected a text that is not empty");
-  rejected(std::string(speeds) + "[peak]\nmeasure = \"speed\"\n",
-           "plan.toml:6: peak.measure: found the text \"speed\", expected one of deck_acceleration");
-  rejected(
+  expect_plan_rejected(begin + "key = \"contact.friction\"\ndistribution = \"normal\"\nmean = 0.3\n",
+                       "found neither std nor cov");
+  expect_plan_rejected("scene = \"none.toml\"\n[[vary]]\nkey = \"contact.friction\"\nvalues = [0.1]\n",
+                       "plan.toml:1: scene: found no file none.toml");
+  expect_plan_rejected("scene = \".\"\n[[vary]]\n",
+                       "plan.toml:1: scene: found a folder ., expected the file of a scene, relative to the plan");
+  expect_plan_rejected("scene = \"\"\n[[vary]]\n",
+                       "plan.toml:1: scene: found the text \"\", expected a text that is not empty");
+  expect_plan_rejected(std::string(speeds) + "[peak]\nmeasure = \"speed\"\n",
+                       "plan.toml:6: peak.measure: found the text \"speed\", expected one of deck_acceleration");
+  expect_plan_rejected(
       begin +
           "key = \"train.speed_kmh\"\nvalues = [200, 100]\n[threshold]\nmeasure = \"derailment\"\nlimit = 0.8\n"
           "variable = \"train.speed_kmh\"\n",
       "plan.toml:8: threshold.variable: found values of train.speed_kmh that do not rise, expected values that rise");
-  rejected(std::string(speeds) + "[probability]\nmethod = \"subset\"\nmeasure = \"derailment\"\nlimit = 0.8\n",
-           "found a variable with values, expected a distribution for each variable");
-  rejected(std::string(speeds) + speeds, "plan.toml:5");
+  expect_plan_rejected(
+      std::string(speeds) + "[probability]\nmethod = \"subset\"\nmeasure = \"derailment\"\nlimit = 0.8\n",
+      "found a variable with values, expected a distribution for each variable");
+  expect_plan_rejected(std::string(speeds) + speeds, "plan.toml:5");
   const std::string first = begin + "key = \"load.1.Fz\"\nvalues = [1]\n[[vary]]\nname = \"again\"\nkey = ";
-  rejected(first + "\"load.Fz\"\nvalues = [2]\n", "vary[2].key: found load.1.Fz twice, expected each key once");
+  expect_plan_rejected(first + "\"load.Fz\"\nvalues = [2]\n",
+                       "vary[2].key: found load.1.Fz twice, expected each key once");
   for (const char* name : {"run", "complete", "message", "wheel_unloading"}) {
-    rejected(begin + "name = \"" + name + "\"\nkey = \"train.speed_kmh\"\nvalues = [100]\n",
-             std::string("plan.toml:3: vary[1].name: found \"") + name +
-                 "\", expected another name: runs.csv has a column of this one");
+    expect_plan_rejected(begin + "name = \"" + name + "\"\nkey = \"train.speed_kmh\"\nvalues = [100]\n",
+                         std::string("plan.toml:3: vary[1].name: found \"") + name +
+                             "\", expected another name: runs.csv has a column of this one");
   }
-  rejected(begin + "key = \"train.speed_kmh\"\nvalues = [200, 100]\n[peak]\nmeasure = \"derailment\"\n",
-           "plan.toml:2: vary[1].values: found values that do not rise, expected values that rise");
+  expect_plan_rejected(begin + "key = \"train.speed_kmh\"\nvalues = [200, 100]\n[peak]\nmeasure = \"derailment\"\n",
+                       "plan.toml:2: vary[1].values: found values that do not rise, expected values that rise");
 }
 
 // A message about a key names the variable that sets this key, and none where it could be one of several.
 TEST_F(StudyCommand, NamesTheVariableOfTheKey) {
-  const auto rejected = [&](const std::string& plan, const std::string& message) {
-    write("plan.toml", plan);
-    expect_rejected("study plan.toml -o out", message);
-  };
   const std::string begin = "scene = \"scene.toml\"\n[[vary]]\nkey = ";
-  rejected(begin + "\"integration.duration\"\nvalues = [1]\n[[vary]]\nkey = \"load.1.gust_duration\"\nvalues = [1]\n",
-           "vsi: plan.toml:5: vary[2].load.1.gust_duration: found 0 [[load]] in the scene");
+  expect_plan_rejected(
+      begin + "\"integration.duration\"\nvalues = [1]\n[[vary]]\nkey = \"load.1.gust_duration\"\nvalues = [1]\n",
+      "vsi: plan.toml:5: vary[2].load.1.gust_duration: found 0 [[load]] in the scene");
   write("scene.toml", std::string(scene) + "[[load]]\nFz = 1.0\n[[load]]\nFz = 1.0\n");
-  rejected(begin + "\"load.2.Fz\"\nvalues = [\"x\"]\n", "vsi: plan.toml:2: vary[1].load.2.Fz: found the text \"x\"");
-  rejected(begin + "\"load.1.Fz\"\nvalues = [1]\n[[vary]]\nkey = \"load.2.Fz\"\nvalues = [\"x\"]\n",
-           "vsi: plan.toml: load.Fz: found the text \"x\"");
+  expect_plan_rejected(begin + "\"load.2.Fz\"\nvalues = [\"x\"]\n",
+                       "vsi: plan.toml:2: vary[1].load.2.Fz: found the text \"x\"");
+  expect_plan_rejected(begin + "\"load.1.Fz\"\nvalues = [1]\n[[vary]]\nkey = \"load.2.Fz\"\nvalues = [\"x\"]\n",
+                       "vsi: plan.toml: load.Fz: found the text \"x\"");
 }
 
 TEST_F(StudyCommand, KeepsOtherFilesAndOtherStudies) {

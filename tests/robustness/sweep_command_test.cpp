@@ -174,6 +174,29 @@ TEST_F(SweepCommand, ShardsAndAKillMakeTheSameSummary) {
   EXPECT_NE(one.header.scene_text.find("# vsi sweep: train.speed = 27.77"), std::string::npos);
 }
 
+// Rows alone are those of runs with results. Results that are there stay, and a later sweep can add them.
+TEST_F(SweepCommand, SummaryOnlyHasTheSameRows) {
+  write("scene.toml", scene);
+  const auto sweep = [&](const std::string& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"sweep", "scene.toml", "--speed-kmh", "100:150:50", "-o", folder, "--quiet"};
+    all.insert(all.end(), more.begin(), more.end());
+    return vsi(all);
+  };
+  ASSERT_EQ(sweep("whole", {}), 0) << text("log");
+  ASSERT_EQ(sweep("rows", {"--summary-only"}), 0) << text("log");
+  const std::vector<std::string> whole = lines_of(text("whole/summary.csv")), rows = lines_of(text("rows/summary.csv"));
+  ASSERT_EQ(whole.size(), 3U);
+  ASSERT_EQ(rows.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(numbers_of(rows[i]), numbers_of(whole[i]));
+  EXPECT_FALSE(fs::exists(folder_ / "rows/v027.778-s001.h5"));
+
+  ASSERT_EQ(sweep("whole", {"--summary-only"}), 0) << text("log");
+  EXPECT_TRUE(fs::exists(folder_ / "whole/v027.778-s001.h5")) << "results were removed";
+  ASSERT_EQ(sweep("rows", {}), 0) << text("log");
+  EXPECT_TRUE(fs::exists(folder_ / "rows/v027.778-s001.h5"));
+  EXPECT_EQ(numbers_of(lines_of(text("rows/summary.csv"))[2]), numbers_of(whole[2]));
+}
+
 // A wind that lifts the train off its rails is an answer, which the summary has to give.
 TEST_F(SweepCommand, ATrainThatDerailsHasItsRow) {
   write("storm.toml",

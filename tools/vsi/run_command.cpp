@@ -27,6 +27,7 @@
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
+#include "railtab/runtime/scene/timed_model.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -277,6 +278,13 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
     throw ComputationError(fmt::format("{}; the same command{} goes on from the last checkpoint in {}", failure.what(),
                                        options.ended ? "" : " with --resume", options.output));
   }
+}
+
+int run_without_results(const SceneParameters& scene, const RunOptions& options) {
+  RunDisplay display(options);
+  const TimedModel timed(scene, options.shared);
+  const RunSummary summary = timed.counted(run_scene(scene, timed.model(), display.observer()));
+  return display.finish(scene, summary, summary.steps > 0);
 }
 
 namespace {

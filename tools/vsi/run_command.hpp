@@ -25,4 +25,8 @@ struct RunOptions {
 /// another run's
 int run_to_file(const SceneParameters& scene, const RunOptions& options);
 
+/// Runs a scene for its headline alone: writes no results, cannot be resumed. @return exit code
+/// @throws InputError as run_scene()
+int run_without_results(const SceneParameters& scene, const RunOptions& options);
+
 }  // namespace railtab::vsi

@@ -171,7 +171,7 @@ int RunPool::run(const std::vector<PooledRun>& runs, std::size_t processes) {
 }
 
 bool RunPool::finished(const std::string& name) const {
-  return fs::exists(file(name, ".row")) && (!options_.keep_results || fs::exists(file(name, ".h5")));
+  return fs::exists(file(name, ".row")) && (options_.results != PooledResults::kept || fs::exists(file(name, ".h5")));
 }
 
 fs::path RunPool::file(const std::string& name, const char* suffix) const { return folder_ / (name + suffix); }
@@ -304,9 +304,9 @@ int RunPool::make_row(Board& board, std::size_t number, const SceneParameters& s
   const PooledRun& run = (*runs_)[number];
   const fs::path results = file(run.name, ".h5");
   const auto tidy = [&] {
-    if (!options_.keep_results && finished(run.name)) fs::remove(results);
+    if (options_.results == PooledResults::removed && finished(run.name)) fs::remove(results);
   };
-  if (options_.keep_results || !finished(run.name)) set_others_aside(run.name, scene);
+  if (options_.results == PooledResults::kept || !finished(run.name)) set_others_aside(run.name, scene);
   if (finished(run.name)) {
     tidy();
     return kept;
@@ -324,8 +324,9 @@ int RunPool::make_row(Board& board, std::size_t number, const SceneParameters& s
     end.emplace(headline, summary);
     if (!summary.complete) say_early_end(run.name, scene, headline, summary);
   };
-  const int code = run_to_file(scene, options);
-  if (end && fs::exists(results)) {
+  const bool writes = options_.results != PooledResults::unwritten || fs::exists(results);
+  const int code = writes ? run_to_file(scene, options) : run_without_results(scene, options);
+  if (end && (!writes || fs::exists(results))) {
     write_warnings(run.name, warnings);
     // another process may have been faster, with another run time in the same row
     write_text_file(file(run.name, ".row"), run.row(end->first, end->second, results), run.name + ",");
@@ -344,7 +345,7 @@ void RunPool::say_early_end(const std::string& name, const SceneParameters& scen
                             const RunSummary& summary) const {
   const std::string when = summary.steps > 0 ? fmt::format("the run ended at t = {:.6g} s", headline.simulated_time)
                                              : std::string("no step was made");
-  const std::string where = summary.steps > 0 && options_.keep_results
+  const std::string where = summary.steps > 0 && options_.results == PooledResults::kept
                                 ? fmt::format("; everything up to there is in {}", file(name, ".h5").string())
                                 : std::string();
   print_message(

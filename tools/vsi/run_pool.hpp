@@ -20,17 +20,21 @@ struct PooledRun {
   std::function<std::string(const report::Headline&, const RunSummary&, const std::filesystem::path& results)> row;
 };
 
+/// What becomes of the results of a run: they are kept, are removed once it has its row, or are never written, where
+/// none are there already.
+enum class PooledResults { kept, removed, unwritten };
+
 struct RunPoolOptions {
   std::string command;                           ///< "vsi sweep", for messages
   bool quiet = false;                            ///< no line for each run that has ended
   std::function<void(double share)> progress{};  ///< of all runs together, 0..1; may be empty
-  bool keep_results = true;                      ///< false: those of a run are removed once it has its row
+  PooledResults results = PooledResults::kept;
 };
 
 /// Runs in worker processes, each of which makes one run after the other and keeps what they have in common
-/// (SharedSetUp). A worker that dies loses the run that it makes, and another takes its place; every run can be
-/// resumed. A run has up to three files in the folder: NAME.h5, its results, NAME.warnings, a line for each of its
-/// warnings, where it has any, and NAME.row, written last.
+/// (SharedSetUp). A worker that dies loses the run that it makes, and another takes its place; every run that
+/// writes results can be resumed. A run has up to three files in the folder: NAME.h5, its results, NAME.warnings, a
+/// line for each of its warnings, where it has any, and NAME.row, written last.
 class RunPool {
  public:
   RunPool(std::filesystem::path scene_file, std::filesystem::path folder, RunPoolOptions options);

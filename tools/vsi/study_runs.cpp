@@ -307,7 +307,9 @@ void StudyRuns::tidy(const std::vector<StudyPoint>& points) const {
 }
 
 RunPool StudyRuns::pool(const std::function<void(double)>& progress) const {
-  return {plan_.scene_file, options_.folder, {"vsi study", options_.quiet, progress, plan_.keep_results}};
+  return {plan_.scene_file,
+          options_.folder,
+          {"vsi study", options_.quiet, progress, plan_.keep_results ? PooledResults::kept : PooledResults::removed}};
 }
 
 PooledRun StudyRuns::pooled_at(const StudyPoint& point) const {

@@ -47,8 +47,9 @@ po::options_description sweep_options() {
       ("speed", text_value()->value_name("LO:HI:STEP"), "speeds in m/s")                         //
       ("speed-kmh", text_value()->value_name("LO:HI:STEP"), "speeds in km/h")                    //
       ("seeds", text_value("1")->value_name("N"),
-       "random tracks for each speed: irregularity.seed and the N - 1 that follow")  //
-      ("shard", text_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs");
+       "random tracks for each speed: irregularity.seed and the N - 1 that follow")       //
+      ("shard", text_value("1/1")->value_name("I/N"), "the I-th of N parts of the runs")  //
+      ("summary-only", "only the rows of summary.csv, no files of results");
   return own;
 }
 
@@ -86,8 +87,10 @@ void print_outcome(const CommandLine& line, const RunCount& count, std::size_t o
 }  // namespace
 
 int sweep_command(const Arguments& arguments) {
-  const CommandLine line("vsi sweep SCENE.toml --speed LO:HI:STEP [--seeds N] [--shard I/N] -o DIR", sweep_options(),
-                         {"scene"}, arguments);
+  const CommandLine line(
+      "vsi sweep SCENE.toml --speed LO:HI:STEP [--seeds N] [--shard I/N] [--summary-only]\n"
+      "               -o DIR",
+      sweep_options(), {"scene"}, arguments);
   if (line.help_printed()) return done;
   const std::string scene_file = line.required("scene");
   const fs::path folder = line.required("output");
@@ -103,7 +106,11 @@ int sweep_command(const Arguments& arguments) {
   remove_abandoned_runs(rows_of(all), {"scene.toml", "summary.csv"}, folder);
   check_same_scene(scene_file, scene.text, scene.files, folder);
   const auto processes = static_cast<std::size_t>(line.workers());
-  RunPool sweep(scene_file, folder, {"vsi sweep", line.quiet() || line.json()});
+  RunPool sweep(scene_file, folder,
+                {"vsi sweep",
+                 line.quiet() || line.json(),
+                 {},
+                 line.given("summary-only") ? PooledResults::unwritten : PooledResults::kept});
   std::vector<PooledRun> runs;
   for (const SweepRun& run : own) runs.push_back(pooled(scene, run));
   const int code = sweep.run(runs, processes);
