@@ -32,7 +32,7 @@ DeckEnvelope::DeckEnvelope(const VsiModel& model, double cut_off, double step)
   const auto& rows = deck().rows;
   unknowns_.assign(rows.innerIndexPtr(), rows.innerIndexPtr() + rows.nonZeros());
   std::ranges::sort(unknowns_);
-  unknowns_.erase(std::ranges::unique(unknowns_).begin(), unknowns_.end());
+  unknowns_.erase(std::unique(unknowns_.begin(), unknowns_.end()), unknowns_.end());
   node_rows_ = deck().rows.middleRows(static_cast<Eigen::Index>(nodes_.first), static_cast<Eigen::Index>(nodes_.count));
 }
 
