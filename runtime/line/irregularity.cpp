@@ -88,6 +88,13 @@ double Irregularity::largest() const noexcept {
   return largest;
 }
 
+double Irregularity::largest_mean_height() const noexcept {
+  constexpr std::size_t z_left = 1, z_right = 3;
+  double largest = 0.0;
+  for (const Knot& knot : knots_) largest = std::max(largest, 0.5 * std::abs(knot.value[z_left] + knot.value[z_right]));
+  return largest;
+}
+
 Irregularity::Extreme Irregularity::farthest_out() const noexcept {
   Extreme farthest;
   for (std::size_t c = 0; c < 4; ++c) {

@@ -34,6 +34,8 @@ class Irregularity {
   [[nodiscard]] double end() const noexcept { return x_.back(); }
   /// Largest deviation at the measured positions [m]; 0 without any.
   [[nodiscard]] double largest() const noexcept;
+  /// Largest mean of z_left and z_right there [m]; 0 without any.
+  [[nodiscard]] double largest_mean_height() const noexcept;
 
   /// An extreme of a column's spline between point `point` and the next.
   struct Extreme {

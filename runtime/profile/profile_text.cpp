@@ -16,11 +16,6 @@ namespace railtab {
 
 namespace {
 constexpr std::string_view blanks = " \t\r\f\v";
-
-bool equal_but_for_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 }  // namespace
 
 std::optional<std::string> ProfileText::next() {
@@ -38,10 +33,15 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+bool same_ignoring_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
 std::string note_of_case(const ProfileText& text, std::string_view key, std::span<const std::string_view> known) {
   if (std::find(known.begin(), known.end(), key) != known.end()) return {};
   const auto like =
-      std::find_if(known.begin(), known.end(), [&](std::string_view k) { return equal_but_for_case(k, key); });
+      std::find_if(known.begin(), known.end(), [&](std::string_view k) { return same_ignoring_case(k, key); });
   if (like == known.end()) return {};
   return fmt::format("{}: the key {} is ignored; the known key is {}", text.place(), key, *like);
 }

@@ -24,6 +24,8 @@ struct ProfileText {
 /// Text without blanks at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
+[[nodiscard]] bool same_ignoring_case(std::string_view a, std::string_view b);
+
 /// A note that the key on the text's line is ignored, where it is not one of `known` but for its case; empty of others.
 [[nodiscard]] std::string note_of_case(const ProfileText& text, std::string_view key,
                                        std::span<const std::string_view> known);

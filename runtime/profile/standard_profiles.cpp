@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <numbers>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/conic_arc_wheel.hpp"
 #include "railtab/runtime/profile/lma_type_wheel.hpp"
 #include "railtab/runtime/profile/profile_segments.hpp"
+#include "railtab/runtime/profile/profile_text.hpp"
 #include "railtab/runtime/profile/rail_head.hpp"
 #include "railtab/runtime/profile/s1002_wheel.hpp"
 
@@ -54,11 +54,6 @@ constexpr std::array<Entry, 9> entries{{
      [](double inclination) { return rail_head_segments(rail_jis60_stand_in, inclination); }},
     {ProfileKind::rail, "knife-edge", "", [](double) { return knife_edge_segments(); }, false},
 }};
-
-bool same_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 }  // namespace
 

@@ -136,9 +136,9 @@ void unpack(std::span<const double> numbers, VsiState& state, std::optional<Deck
 }  // namespace
 
 RunSummary run_scene(const SceneParameters& scene, const RunObserver& observer,
-                     const std::optional<RunCheckpoint>& resume) {
+                     const std::optional<RunCheckpoint>& resume, SharedSetUp* shared) {
   if (observer.setup) observer.setup("building the model");
-  const TimedModel timed(scene);
+  const TimedModel timed(scene, shared);
   return timed.counted(run_scene(scene, timed.model(), observer, resume));
 }
 

@@ -27,7 +27,7 @@
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_keys.hpp"
 #include "railtab/runtime/scene/scene_parameters.hpp"
-#include "railtab/runtime/scene/timed_model.hpp"
+#include "railtab/runtime/scene/scene_run.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step_record.hpp"
 #include "railtab/tables/files/array_file.hpp"
@@ -282,8 +282,7 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
 
 int run_without_results(const SceneParameters& scene, const RunOptions& options) {
   RunDisplay display(options);
-  const TimedModel timed(scene, options.shared);
-  const RunSummary summary = timed.counted(run_scene(scene, timed.model(), display.observer()));
+  const RunSummary summary = run_scene(scene, display.observer(), std::nullopt, options.shared);
   return display.finish(scene, summary, summary.steps > 0);
 }
 
