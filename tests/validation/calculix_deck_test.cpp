@@ -65,7 +65,7 @@ TEST_F(ShellDeck, RecordedNodesRoll) {
   model.vehicle_x = {0.0};
   model.structure = share(imported(rails_that_bear_nothing()));
   VsiState state(model);
-  state.structure.displacement = under_train(*model.structure, bay, span - bay, bay, load);
+  state.structure.whole().displacement = under_train(*model.structure, bay, span - bay, bay, load);
   StepRecord record;
   fill_record(model, state, record);
   const std::map<int, double> down = statics(Load::spread_by_ballast);
