@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <variant>
 
 #include "railtab/runtime/contact/contact_search.hpp"
@@ -11,7 +13,8 @@
 namespace railtab {
 
 /// Where the contact geometry of a run comes from: a geometry table (with its online fallback), the online search, or
-/// the published method. Constant after construction; queries are const, allocation-free and thread-safe.
+/// the published method. Constant after construction; queries are const and thread-safe, those for patches free of
+/// allocations.
 class ContactGeometry {
  public:
   using Source = std::variant<TableContact, ContactSearch, PaperSearch>;
@@ -52,13 +55,24 @@ class ContactGeometry {
         source_);
   }
 
+  /// Equivalent conicity at an amplitude [m] by the wave's length [EN15302]. Takes milliseconds; a further call for the
+  /// same amplitude, of any thread, returns what the last one found. @returns none where there is no wave
+  [[nodiscard]] std::optional<double> equivalent_conicity(double amplitude) const;
+
   /// The published method returns discretised pairs, which the common-normal Newton must not improve.
   [[nodiscard]] bool is_paper() const noexcept { return std::holds_alternative<PaperSearch>(source_); }
 
  private:
+  struct LastConicity {
+    std::mutex mutex;
+    double amplitude = 0.0;  ///< none
+    std::optional<double> value;
+  };
+
   Source source_;
   std::shared_ptr<const LoadedTable> loaded_;
   double unused_error_;
+  std::shared_ptr<LastConicity> last_conicity_ = std::make_shared<LastConicity>();
 };
 
 }  // namespace railtab

@@ -97,7 +97,7 @@ void add_growth(const HuntingSystem& system, const VsiModel& contacts, double sp
         to_kmh * speed, system.name, text_of(at_rest)));
     return;
   }
-  const std::optional<double> conicity = equivalent_conicity(*model.geometry, amplitude);
+  const std::optional<double> conicity = model.geometry->equivalent_conicity(amplitude);
   if (!conicity) return;
   const LeastStableMotion disturbed = least_stable_motion(model, speed, conicity);
   if (!disturbed.grows()) return;

@@ -10,7 +10,6 @@
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/contact/equivalent_conicity.hpp"
 #include "railtab/runtime/stability/contact_slopes.hpp"
 #include "railtab/runtime/stability/rigid_rails.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
@@ -125,22 +124,6 @@ LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSear
   }
   result.critical = unstable;
   return result;
-}
-
-std::optional<double> equivalent_conicity(const ContactGeometry& geometry, double amplitude) {
-  // as far as a wave about a rest off the centre goes; ΔR within some 1e-3 of its size
-  constexpr double off_centre = 3e-3;
-  const double reach = amplitude + off_centre;
-  const WheelsetContactOptions options{.y_low = -reach, .y_high = reach, .step = 5e-4, .tolerance = 5e-7};
-  const TableContact* const table = geometry.table();
-  const auto tabulated = [table](const WheelsetPose& pose, double near_miss) {
-    return table->patches(pose, near_miss);
-  };
-  const RadiusDifferenceCurve curve(table ? wheelset_contacts(tabulated, geometry.pair(), options)
-                                          : wheelset_contacts(ContactSearch(geometry.pair()), options));
-  const EquivalentConicity conicity = conicity_of_wave(curve, amplitude);
-  if (conicity.status != ConicityStatus::found) return {};
-  return conicity.tan_gamma;
 }
 
 }  // namespace railtab

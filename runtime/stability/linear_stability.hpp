@@ -67,8 +67,4 @@ struct LinearCriticalSpeed {
 [[nodiscard]] LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSearch& search = {},
                                                         std::optional<double> conicity = {});
 
-/// Equivalent conicity of a pair at an amplitude [m] by the wave's length [EN15302]. @returns none where there is no
-/// wave
-[[nodiscard]] std::optional<double> equivalent_conicity(const ContactGeometry& geometry, double amplitude);
-
 }  // namespace railtab

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "railtab/runtime/base/input_error.hpp"
-#include "railtab/runtime/stability/linear_stability.hpp"
 
 namespace railtab::vsi {
 
@@ -13,7 +12,7 @@ void set_conicity(const CommandLine& line, HuntingCase& hunting) {
   if (!(*hunting.amplitude > 0.0 && *hunting.amplitude < 0.01)) {
     throw input_error("--amplitude", fmt::format("{} m", *hunting.amplitude), "above 0, below 0.01 m");
   }
-  hunting.conicity = equivalent_conicity(*hunting.model.geometry, *hunting.amplitude);
+  hunting.conicity = hunting.model.geometry->equivalent_conicity(*hunting.amplitude);
   if (hunting.conicity) return;
   throw input_error("--amplitude", fmt::format("{} m, at which these profiles have no wave", *hunting.amplitude),
                     "a smaller amplitude, or none: the contact at rest");
