@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "railtab/runtime/base/input_error.hpp"
@@ -15,8 +16,10 @@ namespace railtab {
 
 namespace {
 
-/// Pressure moments of one part of the rail's surface.
+/// Pressure moments of one part of the rail's surface. Arc lengths count from where it begins to press: those of a part
+/// that a cut leaves a nanometre of a row would have no digit left of its width.
 struct PartSums {
+  double origin = 0.0;
   double force = 0.0, x = 0.0, s = 0.0, xx = 0.0, xs = 0.0, ss = 0.0, pp = 0.0, s_wheel = 0.0;
   Eigen::Vector3d arm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
   double peak = 0.0, saddle = 0.0, pressure = 0.0;
@@ -54,8 +57,9 @@ std::vector<PartSums> part_sums(const ContactSearch& search, const LoadedContact
       const double from = p == 0 ? low : std::max(low, cut[p - 1]);
       const double to = p == cut.size() ? high : std::min(high, cut[p]);
       if (to <= from) continue;
-      const double share = (to - from) / e.ds, s = 0.5 * (from + to), force = share * row.force;
       PartSums& sum = sums[p];
+      if (sum.force == 0.0) sum.origin = from;
+      const double share = (to - from) / e.ds, s = 0.5 * (from + to) - sum.origin, force = share * row.force;
       sum.force += force;
       sum.x += share * row.x;
       sum.xx += share * row.xx;
@@ -78,35 +82,6 @@ std::vector<PartSums> part_sums(const ContactSearch& search, const LoadedContact
     sums[p].saddle = (1.0 - part) * density[j] + part * density[j + 1];
   }
   return sums;
-}
-
-void set_parts(const ContactSearch& search, const LoadedContact& contact, const std::vector<double>& cut, double w,
-               LoadedNode& node) {
-  const double dx = contact.elements.dx;
-  for (const PartSums& sum : part_sums(search, contact, cut)) {
-    LoadedPart part{};
-    if (sum.force > 0.0) {
-      const double x = sum.x / sum.force, s = sum.s / sum.force;
-      const EllipseOfPressure ellipse({.xx = sum.xx / sum.force - x * x + dx * dx / 12.0,
-                                       .xs = sum.xs / sum.force - x * s,
-                                       .ss = sum.ss / sum.force - s * s,
-                                       .mean_pressure = sum.pp / sum.force},
-                                      sum.force);
-      part = {.share = sum.direction.z() / contact.on_rail.force.z(),
-              .arm_x = contact.pose.yaw != 0.0 ? sum.arm.x() / sum.force / contact.pose.yaw : 0.0,
-              .arm_y = sum.arm.y() / sum.force,
-              .arm_z = sum.arm.z() / sum.force,
-              .angle = std::atan2(-sum.direction.y(), sum.direction.z()),
-              .a = ellipse.a / w,
-              .b = ellipse.b / w,
-              .peak = sum.peak / (w * w),
-              .saddle = sum.saddle / (w * w),
-              .s_rail = s,
-              .s_wheel = sum.s_wheel / sum.force,
-              .pressure = sum.pressure / w};
-    }
-    node.part.push_back(part);
-  }
 }
 
 /// With fewer elements where a narrow part asks for too many.
@@ -182,6 +157,38 @@ ColumnSolutions solutions_near_levels(const ContactSearch& search, WheelsetPose 
 
 }  // namespace
 
+std::vector<LoadedPart> loaded_parts(const ContactSearch& search, const LoadedContact& contact,
+                                     const std::vector<double>& cut, double w) {
+  std::vector<LoadedPart> parts;
+  const double dx = contact.elements.dx;
+  for (const PartSums& sum : part_sums(search, contact, cut)) {
+    LoadedPart part{};
+    if (sum.force > 0.0) {
+      const double x = sum.x / sum.force, s = sum.s / sum.force;
+      const EllipseOfPressure ellipse({.xx = sum.xx / sum.force - x * x + dx * dx / 12.0,
+                                       .xs = sum.xs / sum.force - x * s,
+                                       .ss = sum.ss / sum.force - s * s,
+                                       .mean_pressure = sum.pp / sum.force},
+                                      sum.force);
+      assert(std::isfinite(ellipse.a) && ellipse.b > 0.0);
+      part = {.share = sum.direction.z() / contact.on_rail.force.z(),
+              .arm_x = contact.pose.yaw != 0.0 ? sum.arm.x() / sum.force / contact.pose.yaw : 0.0,
+              .arm_y = sum.arm.y() / sum.force,
+              .arm_z = sum.arm.z() / sum.force,
+              .angle = std::atan2(-sum.direction.y(), sum.direction.z()),
+              .a = ellipse.a / w,
+              .b = ellipse.b / w,
+              .peak = sum.peak / (w * w),
+              .saddle = sum.saddle / (w * w),
+              .s_rail = sum.origin + s,
+              .s_wheel = sum.s_wheel / sum.force,
+              .pressure = sum.pressure / w};
+    }
+    parts.push_back(part);
+  }
+  return parts;
+}
+
 LoadedColumn loaded_column(const ContactSearch& search, const WheelsetPose& pose, const LoadedColumnOptions& options) {
   const TouchPoint touch = search.first_touch(pose.y, pose.roll, pose.yaw);
   if (!std::isfinite(touch.z_touch)) {
@@ -202,7 +209,7 @@ LoadedColumn loaded_column(const ContactSearch& search, const WheelsetPose& pose
     const std::size_t beside = lowering > found.lowering[k] && k + 1 < column.level.size() ? k + 1 : k - 1;
     const double part = (lowering - found.lowering[k]) / (found.lowering[beside] - found.lowering[k]);
     node.z_y = -found.slope[k] - part * (found.slope[beside] - found.slope[k]);
-    set_parts(search, found.contact[k - 1], options.cut, std::pow(over.work(k), 0.2), node);
+    node.part = loaded_parts(search, found.contact[k - 1], options.cut, std::pow(over.work(k), 0.2));
   }
   LoadedNode& first = column.level.front();
   first.z = touch.z_touch;

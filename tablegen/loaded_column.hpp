@@ -37,4 +37,9 @@ struct LoadedColumnOptions {
 [[nodiscard]] LoadedColumn loaded_column(const ContactSearch& search, const WheelsetPose& pose,
                                          const LoadedColumnOptions& options);
 
+/// The parts of a solution whose energy is w⁵ [J], reduced as in LoadedTableData; zeros where one does not press.
+/// @param cut as of LoadedColumnOptions
+[[nodiscard]] std::vector<LoadedPart> loaded_parts(const ContactSearch& search, const LoadedContact& contact,
+                                                   const std::vector<double>& cut, double w);
+
 }  // namespace railtab

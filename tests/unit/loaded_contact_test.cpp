@@ -8,9 +8,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/profile/standard_profiles.hpp"
+#include "railtab/tablegen/loaded_column.hpp"
 
 namespace railtab {
 namespace {
@@ -131,6 +133,27 @@ TEST(LoadedContact, IsHertzsWhereCurvaturesAreConstant) {
   const LoadedContact fine = loaded_contact(search, pose, options);
   EXPECT_NEAR(fine.normal_force / contact.normal_force, 1.0, 1e-3);
   EXPECT_LT(std::abs(fine.normal_force / force - 1.0), std::abs(contact.normal_force / force - 1.0));
+}
+
+// A cut that leaves a second part some nanometres of the last row under pressure, and less: its arc length has few
+// digits of that width, its ellipse all of them.
+TEST(LoadedContact, PartsOfNearlyNoWidthKeepTheirShape) {
+  const WheelsetPose pose = lowered(1e-3, 0.0, 4e-3, 5e-5);
+  const LoadedContact contact = loaded_contact(s1002_on_60e1(), pose, {});
+  ASSERT_TRUE(contact.converged);
+  const ContactElements& e = contact.elements;
+  int last = e.ns - 1;
+  while (contact.pressure.segment(static_cast<Eigen::Index>(last) * e.nx, e.nx).maxCoeff() <= 0.0) --last;
+  const double end = e.line[static_cast<std::size_t>(last)].s + 0.5 * e.ds, w = std::pow(contact.elastic_energy, 0.2);
+  double slenderness = 0.0;
+  for (const double width : {0.5 * e.ds, 1e-8, 1e-10, 1e-12, 1e-14}) {
+    const double cut = end - width, left = end - cut;
+    const std::vector<LoadedPart> parts = loaded_parts(s1002_on_60e1(), contact, {cut}, w);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_NEAR(parts[1].s_rail, cut + 0.5 * left, 1e-16) << width;
+    if (slenderness == 0.0) slenderness = parts[1].a / parts[1].b * left;
+    EXPECT_NEAR(parts[1].a / parts[1].b * left / slenderness, 1.0, 1e-9) << width;
+  }
 }
 
 // In the flange root a contact 14 mm wide presses most on a strip of 1 mm, which is no part of the overlap by itself.
