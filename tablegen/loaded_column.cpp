@@ -16,10 +16,10 @@ namespace railtab {
 
 namespace {
 
-/// Pressure moments of one part of the rail's surface. Arc lengths count from where it begins to press: those of a part
-/// that a cut leaves a nanometre of a row would have no digit left of its width.
+/// Pressure moments of one part of the rail's surface. A cut may leave a part a nanometre of a row, whose second moment
+/// would be lost in the square of an arc length of centimetres: arc lengths are relative to `origin`.
 struct PartSums {
-  double origin = 0.0;
+  double origin = 0.0;  ///< arc length at which the part begins to press [m]
   double force = 0.0, x = 0.0, s = 0.0, xx = 0.0, xs = 0.0, ss = 0.0, pp = 0.0, s_wheel = 0.0;
   Eigen::Vector3d arm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
   double peak = 0.0, saddle = 0.0, pressure = 0.0;

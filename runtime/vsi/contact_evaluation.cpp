@@ -38,32 +38,11 @@ void keep_numbers(const WheelForce& force, std::size_t wheel, ContactSolution& s
   counts.outside_creep_table += force.outside_creep_table;
 }
 
-// The contacts of both wheels of each wheelset.
-void look_up(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
-             ContactSolution& s, NewtonWorkspace& ws, ContactCounts& counts) {
-  const Stopwatch watch(counts.seconds_lookup);
-  for (int w = wheelsets.first; w < wheelsets.end; ++w) {
-    const WheelContactModel& model = train[w];
-    const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
-    for (int side = 0; side < 2; ++side) {
-      const std::size_t number = index(2 * w + side);
-      const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
-      const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_sides[index(side)], motion, rail);
-      WheelContact& contact = s.contact[number];
-      contact = contact_of_wheel(model, number, pose, pairs, ws);
-      if (pairs != Pairs::searched) continue;
-      ++counts.queries;
-      if (answered_by_table(*model.geometry, contact)) ++counts.table_queries;
-    }
-  }
-}
-
 }  // namespace
 
 ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
                        ContactSolution& s, NewtonWorkspace& ws) {
   ContactCounts counts;
-  look_up(train, problem, pairs, wheelsets, s, ws, counts);
   for (int w = wheelsets.first; w < wheelsets.end; ++w) {
     const WheelContactModel& model = train[w];
     const WheelsetMotion motion = wheelset_motion(problem, s.displacement, w);
@@ -75,7 +54,16 @@ ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem,
       const RailHeadMotion rail = rail_motion(problem, s.displacement, w, side);
       const WheelSide wheel_side = wheel_sides[index(side)];
       const std::size_t number = index(2 * w + side);
-      const WheelContact& contact = s.contact[number];
+      const WheelsetPose pose = relative_pose(model.geometry->pair(), wheel_side, motion, rail);
+      WheelContact& contact = s.contact[number];
+      {
+        const Stopwatch watch(counts.seconds_lookup);
+        contact = contact_of_wheel(model, number, pose, pairs, ws);
+      }
+      if (pairs == Pairs::searched) {
+        ++counts.queries;
+        if (answered_by_table(*model.geometry, contact)) ++counts.table_queries;
+      }
       const LoadedWheelForce wheel = wheel_force(model, wheel_side, motion, rail, contact);
       const int r = 6 + 3 * side;
       end_force.head<6>() += wheel.wheelset;
