@@ -17,9 +17,10 @@ constexpr double resolution = 1e-10;  // of y [m]
 
 }  // namespace
 
-std::vector<ContactJump> contact_jumps(const ContactSearch& search, const Interval& lateral, double roll, double yaw) {
+std::vector<ContactJump> contact_jumps(const ContactSearch& search, const Interval& lateral, double roll, double yaw,
+                                       double climb) {
   std::vector<ContactJump> jumps;
-  const auto place = [&](double y) { return search.first_touch(y, roll, yaw).s_rail; };
+  const auto place = [&](double y) { return search.first_touch(y, roll - climb * y, yaw).s_rail; };
   const int steps = static_cast<int>(std::ceil((lateral.high - lateral.low) / scan_step));
   double y_before = lateral.low, s_before = place(y_before);
   for (int i = 1; i <= steps; ++i) {
@@ -70,9 +71,9 @@ std::vector<std::optional<double>> same_jumps(const std::vector<ContactJump>& re
   return places;
 }
 
-double widest_gap(const ContactSearch& search, const ContactJump& jump) {
-  WheelsetPose pose{.y = jump.y};
-  pose.z = search.touch_height(jump.y, 0.0, 0.0);
+double widest_gap(const ContactSearch& search, const ContactJump& jump, double roll) {
+  WheelsetPose pose{.y = jump.y, .roll = roll};
+  pose.z = search.touch_height(jump.y, roll, 0.0);
   const UndeformedDistance distance(search.pair(), pose);
   const double low = std::min(jump.s_below, jump.s_above), high = std::max(jump.s_below, jump.s_above);
   double widest = 0.0, at = 0.5 * (low + high);

@@ -84,16 +84,23 @@ std::vector<PartSums> part_sums(const ContactSearch& search, const LoadedContact
   return sums;
 }
 
-/// With fewer elements where a narrow part asks for too many.
+/// With fewer elements where a narrow part asks for too many, and at last with more than allowed: two narrow contacts
+/// on tread and flange, which yaw moves centimetres apart along the rail, lie in a wide box.
 LoadedContact solved(const ContactSearch& search, const WheelsetPose& pose, LoadedContactOptions options,
                      int refinements) {
   while (true) {
     try {
       return loaded_contact(search, pose, options, refinements);
     } catch (const TooManyElements&) {
-      constexpr int fewest = 4;  // ContactElementOptions
-      options.elements.across_narrowest = options.elements.across_narrowest * 2 / 3;
-      if (options.elements.across_narrowest < fewest) throw;
+      constexpr int fewest = 4;     // ContactElementOptions
+      constexpr int most = 500000;  // some seconds each
+      if (options.elements.across_narrowest > fewest) {
+        options.elements.across_narrowest = std::max(fewest, options.elements.across_narrowest * 2 / 3);
+      } else if (options.elements.most < most) {
+        options.elements.most = most;
+      } else {
+        throw;
+      }
     }
   }
 }
@@ -124,19 +131,25 @@ LoadedContact near_level(const ContactSearch& search, WheelsetPose pose, double 
       pose.y, pose.roll, pose.yaw, std::pow(w, 5)));
 }
 
+/// ∂U/∂roll [N m].
+double roll_moment(const ContactSearch& search, const LoadedContact& contact) {
+  const WheelsetCentre centre = wheelset_centre(search.pair(), contact.pose);
+  return contact.on_rail.moment_about({0.0, centre.y, centre.z}).x();
+}
+
 /// Solutions at growing energy, their number that of the levels above first touch.
 struct ColumnSolutions {
   // from first touch on
   std::vector<double> lowering{0.0};   ///< [m]
   std::vector<double> force{0.0};      ///< F_z [N]
-  std::vector<double> slope;           ///< F_y/F_z
+  std::vector<double> slope;           ///< (F_y − climb·F_roll)/F_z
   std::vector<LoadedContact> contact;  ///< without first touch
 };
 
 ColumnSolutions solutions_near_levels(const ContactSearch& search, WheelsetPose pose, const TouchPoint& touch,
                                       double step, const LoadedColumnOptions& options, long& count) {
   ColumnSolutions found;
-  found.slope.push_back(-touch.z_touch_dy);
+  found.slope.push_back(options.climb * touch.z_touch_droll - touch.z_touch_dy);
   const auto steepness = [&](std::size_t k) {
     return found.lowering[k] / std::pow(found.contact[k - 1].elastic_energy, 0.4);
   };
@@ -150,7 +163,8 @@ ColumnSolutions solutions_near_levels(const ContactSearch& search, WheelsetPose 
         found.contact.emplace_back(near_level(search, pose, touch.z_touch, w, options, refinements, count));
     found.lowering.push_back(contact.pose.z - touch.z_touch);
     found.force.push_back(contact.on_rail.force.z());
-    found.slope.push_back(contact.on_rail.force.y() / contact.on_rail.force.z());
+    found.slope.push_back((contact.on_rail.force.y() - options.climb * roll_moment(search, contact)) /
+                          contact.on_rail.force.z());
   }
   return found;
 }
@@ -213,7 +227,7 @@ LoadedColumn loaded_column(const ContactSearch& search, const WheelsetPose& pose
   }
   LoadedNode& first = column.level.front();
   first.z = touch.z_touch;
-  first.z_y = touch.z_touch_dy;
+  first.z_y = -found.slope.front();
   first.part = column.level[1].part;
   return column;
 }

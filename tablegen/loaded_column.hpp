@@ -11,7 +11,7 @@ namespace railtab {
 struct LoadedNode {
   double z = 0.0;                ///< height of the wheelset centre [m]
   double z_w = 0.0;              ///< ∂z/∂w at constant pose otherwise, 5 w⁴/F_z
-  double z_y = 0.0;              ///< ∂z/∂y at constant w, −F_y/F_z
+  double z_y = 0.0;              ///< ∂z/∂y at constant w and reduced roll, −(F_y − climb·F_roll)/F_z
   double force = 0.0;            ///< F_z on the rail [N]
   std::vector<LoadedPart> part;  ///< reduced as in LoadedTableData
 };
@@ -29,6 +29,7 @@ struct LoadedColumnOptions {
   LoadedContactOptions contact;
   int levels = 33;
   double largest_level = 1.8;  ///< [J^(1/5)]
+  double climb = 0.0;          ///< as of LoadedTableData
   std::vector<double> cut;     ///< arc lengths on the rail between the parts, increasing [m]
 };
 

@@ -26,12 +26,12 @@ void LoadedSweepOptions::validate() const {
   require(lateral.low < lateral.high, "--lateral", lateral.high, "more than the lower end");
   require(roll.low >= -0.1 && roll.high <= 0.1 && roll.low < roll.high, "--roll", roll.low,
           "LO:HI within +-0.1 rad, LO below HI: moments are derivatives with respect to roll");
+  require(climb >= 0.0 && climb <= largest_climb, "--climb", climb, "0..10 rad/m");
   require(yaw >= 0.0 && yaw <= 0.2, "--yaw", yaw, "0..0.2 rad");
   require(largest_load >= 1e3 && largest_load <= 1e7, "--largest-load", largest_load, "1e3..1e7 N");
   require(levels >= 5 && levels <= 1000, "--levels", levels, "5..1000");
   require(roll_spacing >= 1e-5 && roll_spacing <= 0.1, "--roll-spacing", roll_spacing, "1e-5..0.1 rad");
-  require(yaw_nodes >= 2 && yaw_nodes <= static_cast<int>(LoadedTable::most_yaws), "loaded table: yaw nodes", yaw_nodes,
-          "2..9");
+  require(yaw_nodes >= 2 && yaw_nodes <= static_cast<int>(LoadedTable::most_yaws), "--yaw-nodes", yaw_nodes, "2..9");
   require(force_error >= 1e-5 && force_error <= 0.1, "--force-error", force_error, "1e-5..0.1");
   require(light_error >= 1e-5 && light_error <= 0.1, "--light-error", light_error, "1e-5..0.1");
   require(least_interval >= 1e-8 && least_interval <= 1e-3, "loaded table: least interval", least_interval,
@@ -98,6 +98,7 @@ class LoadedSweep {
     yaw_squared_ = yaw_squared_nodes(options.yaw, options.yaw_nodes);
     column_.contact = options.contact;
     column_.levels = options.levels;
+    column_.climb = options.climb;
     const ContactAtLoad most = contact_at_load(search, {}, options.largest_load, options.contact);
     if (!most.converged) {
       throw ComputationError(
@@ -119,6 +120,10 @@ class LoadedSweep {
   }
 
  private:
+  [[nodiscard]] WheelsetPose pose_at(double y, std::size_t roll, double yaw) const {
+    return {.y = y, .roll = roll_[roll] - options_.climb * y, .yaw = yaw};
+  }
+
   [[nodiscard]] double reference_roll() const {
     return 0.0 >= roll_.front() && 0.0 <= roll_.back() ? 0.0 : roll_.front();
   }
@@ -135,13 +140,13 @@ class LoadedSweep {
     // Jumps enter the range from beside it: they move by 0.4 to 0.8 m per rad, places without one by the radius.
     const double beside = 0.4 * std::max(roll_.back() - reference_roll(), reference_roll() - roll_.front());
     const Interval wide{options_.lateral.low - beside, options_.lateral.high + beside};
-    std::vector<ContactJump> reference = contact_jumps(search_, wide, reference_roll(), 0.0);
+    std::vector<ContactJump> reference = contact_jumps(search_, wide, reference_roll(), 0.0, options_.climb);
     std::vector<std::vector<std::optional<double>>> moved;
     for (const double roll : roll_) {
       for (const double squared : yaw_squared_) {
         const double reach = 1.2e-3 + 1.5 * std::abs(roll - reference_roll());  // some 0.5 to 0.8 m per rad
         const std::vector<ContactJump> jumps =
-            contact_jumps(search_, {wide.low - reach, wide.high + reach}, roll, std::sqrt(squared));
+            contact_jumps(search_, {wide.low - reach, wide.high + reach}, roll, std::sqrt(squared), options_.climb);
         moved.push_back(same_jumps(reference, jumps));
       }
     }
@@ -157,7 +162,9 @@ class LoadedSweep {
     }
     for (std::size_t k = 0; k < moved.size(); ++k) {
       const double roll = roll_[k / yaw_squared_.size()] - reference_roll();
-      warp_.emplace_back(y0, through[k], search_.pair().nominal_radius() * roll);
+      // Without jumps, roll turns the wheel about the height of its centre above the rail.
+      const double radius = search_.pair().nominal_radius();
+      warp_.emplace_back(y0, through[k], radius * roll / (1.0 + radius * options_.climb));
     }
     set_cuts();
   }
@@ -194,7 +201,7 @@ class LoadedSweep {
   [[nodiscard]] double largest_pressure(double y0, std::size_t roll, double load,
                                         const LoadedContactOptions& options) const {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    const WheelsetPose pose{.y = warp_[roll * yaw_squared_.size()].at(y0).y, .roll = roll_[roll]};
+    const WheelsetPose pose = pose_at(warp_[roll * yaw_squared_.size()].at(y0).y, roll, 0.0);
     if (!std::isfinite(search_.first_touch(pose.y, pose.roll, pose.yaw).z_touch)) return unknown;
     try {
       const ContactAtLoad found = contact_at_load(search_, pose, load, options);
@@ -211,7 +218,7 @@ class LoadedSweep {
     });
     for (const ContactJump& jump : largest) {
       if (column_.cut.size() + 1 == LoadedLookup::capacity) break;
-      const double s = widest_gap(search_, jump);
+      const double s = widest_gap(search_, jump, reference_roll() - options_.climb * jump.y);
       const bool near =
           std::any_of(column_.cut.begin(), column_.cut.end(), [&](double other) { return std::abs(other - s) < 1e-3; });
       if (!near) column_.cut.push_back(s);
@@ -237,7 +244,7 @@ class LoadedSweep {
         found[i].yaw = p.yaw;
         found[i].shift = warp_[p.roll * yaw_squared_.size() + p.yaw].at(p.y0);
         found[i].solution =
-            loaded_column(search_, {found[i].shift.y, 0.0, roll_[p.roll], std::sqrt(yaw_squared_[p.yaw])}, column_);
+            loaded_column(search_, pose_at(found[i].shift.y, p.roll, std::sqrt(yaw_squared_[p.yaw])), column_);
         const std::scoped_lock lock(one_at_a_time);
         ++done;
         if (keep_) keep_(found[i]);
@@ -359,6 +366,7 @@ class LoadedSweep {
     data.yaw_squared = yaw_squared_;
     data.levels = options_.levels;
     data.largest_level = column_.largest_level;
+    data.climb = options_.climb;
     data.cut = column_.cut;
     data.contact_modulus = options_.contact.contact_modulus();
     const std::size_t columns = data.columns(), levels = static_cast<std::size_t>(data.levels);

@@ -14,6 +14,7 @@ namespace railtab {
 struct LoadedSweepOptions {
   Interval lateral{-0.008, 0.008};  ///< of the reduced lateral shift y0, low < high, within ±0.1 [m]
   Interval roll{-0.005, 0.005};     ///< of the wheelset against the rail head, within ±0.1 [rad]; low < high
+  double climb = 0.0;               ///< as of LoadedTableData: `roll` is the range of roll + climb·y
   double yaw = 0.010;               ///< largest, 0..0.2 [rad]; 0: without yaw
   double largest_load = 300e3;      ///< vertical force at y = 0 up to which energies are tabulated, 1e3..1e7 [N]
   int levels = 33;                  ///< of energy, 5..1000

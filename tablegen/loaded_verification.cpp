@@ -88,6 +88,7 @@ LoadedVerification verify_loaded_table(const ContactSearch& search, const Loaded
                       .z = 0.0,
                       .roll = within(data.roll.front() + of_roll, data.roll.back() - of_roll),
                       .yaw = within(-yaw, yaw)};
+    pose.roll = data.roll_at(pose.roll, pose.y);
     const TouchPoint touch = search.first_touch(pose.y, pose.roll, pose.yaw);
     const double approach = within(options.approach.low, options.approach.high);
     if (!std::isfinite(touch.z_touch)) {

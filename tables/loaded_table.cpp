@@ -253,6 +253,9 @@ void require_consistent(const LoadedTableData& table, const std::string& source)
     throw input_error(place("levels"), fmt::format("{} up to {}", table.levels, table.largest_level),
                       "3..10000, up to more than 0");
   }
+  if (!(table.climb >= 0.0 && table.climb <= largest_climb)) {
+    throw input_error(place("climb"), fmt::format("{}", table.climb), fmt::format("0..{} rad/m", largest_climb));
+  }
   if (table.parts() > LoadedLookup::capacity) {
     throw input_error(place("cut"), fmt::format("{}", table.cut.size()),
                       fmt::format("at most {}", LoadedLookup::capacity - 1));
@@ -540,13 +543,12 @@ template <class V>
 V& element(std::array<V, 4>& of, std::size_t j) {
   return of[j];
 }
-void set_symmetric(Eigen::Matrix4d& of, std::size_t i, std::size_t j, double value) {
-  const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
-  of(row, column) = of(column, row) = value;
+double& element(Eigen::Matrix4d& of, std::size_t i, std::size_t j) {
+  return of(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
 }
 template <class V>
-void set_symmetric(std::array<std::array<V, 4>, 4>& of, std::size_t i, std::size_t j, const V& value) {
-  of[i][j] = of[j][i] = value;
+V& element(std::array<std::array<V, 4>, 4>& of, std::size_t i, std::size_t j) {
+  return of[i][j];
 }
 
 void set_zero(Eigen::Matrix4d& of) { of.setZero(); }
@@ -814,7 +816,8 @@ class LoadedTable::LookUp {
         }
         Z_2 = Z_2 - Z_y * Y_2 * by_Y_;
         const V w_2 = -((Z_2 + Z_w1[j] * w_1[m] + w_1[j] * Z_w1[m] + Z_ww * w_1[j] * w_1[m]) * by_Z_);
-        set_symmetric(derivatives_->stiffness, j, m, V(5.0 * w3 * (4.0 * w_1[j] * w_1[m] + w * w_2)));
+        element(derivatives_->stiffness, j, m) = element(derivatives_->stiffness, m, j) =
+            5.0 * w3 * (4.0 * w_1[j] * w_1[m] + w * w_2);
       }
     }
   }
@@ -934,6 +937,27 @@ class LoadedTable::LookUp {
   V by_Y_, by_Z_;                                 ///< 1/Y_y0, 1/Z_w
 };
 
+namespace {
+
+/// From derivatives with respect to (y, z, r, yaw), r = roll + climb·y, to those with respect to (y, z, roll, yaw).
+template <class V>
+void add_climb(double climb, LoadedLookupOf<V>& result, LoadedSlopesOf<V>* derivatives) noexcept {
+  element(result.force, 0) = element(result.force, 0) + climb * element(result.force, 2);
+  if (derivatives == nullptr) return;
+  const auto at = [derivatives](std::size_t i, std::size_t j) -> V& { return element(derivatives->stiffness, i, j); };
+  for (std::size_t j = 0; j < 4; ++j) at(0, j) = at(0, j) + climb * at(2, j);
+  for (std::size_t i = 0; i < 4; ++i) at(i, 0) = at(i, 0) + climb * at(i, 2);
+  const std::size_t sloped = result.parts > 1 ? LoadedPart::quantities : LoadedPart::of_one;
+  for (std::size_t p = 0; p < result.parts; ++p) {
+    for (std::size_t q = 0; q < sloped; ++q) {
+      std::array<V, 4>& slope = derivatives->part[p][q];
+      slope[0] = slope[0] + climb * slope[2];
+    }
+  }
+}
+
+}  // namespace
+
 template <bool slopes, class V>
 void LoadedTable::find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
                        LoadedSlopesOf<V>* derivatives) const noexcept {
@@ -941,8 +965,12 @@ void LoadedTable::find(const LoadedPoseOf<V>& pose, LoadedLookupOf<V>& result,
   for (std::size_t j = 0; j < 4; ++j) element(result.force, j) = V{};
   result.parts = 0;
   if constexpr (slopes) set_zero(derivatives->stiffness);
-  const V inside = margin_share(pose.roll, pose.yaw);
-  if (any(inside > V{})) LookUp<slopes, V>(*this, pose, result, derivatives).run(inside);
+  LoadedPoseOf<V> reduced = pose;
+  reduced.roll = pose.roll + data_.climb * pose.y;
+  const V inside = margin_share(reduced.roll, pose.yaw);
+  if (!any(inside > V{})) return;
+  LookUp<slopes, V>(*this, reduced, result, derivatives).run(inside);
+  if (data_.climb != 0.0) add_climb(data_.climb, result, slopes ? derivatives : nullptr);
 }
 
 template void LoadedTable::find<false, double>(const LoadedPoseOf<double>&, LoadedLookup&,

@@ -18,20 +18,21 @@ namespace railtab {
 ///
 /// Without friction the contact is conservative: the force on the rail is the derivative of its elastic energy U with
 /// respect to the pose (y, z, roll, yaw). Stored is the height z of the wheelset at equal energy, over the level
-/// w = U^(1/5) [J^(1/5)], the reduced lateral shift y0, roll and yaw²:
+/// w = U^(1/5) [J^(1/5)], the reduced lateral shift y0, the reduced roll r and yaw²:
 ///
-///   U = w⁵,  z = Z(w, y0, roll, yaw²),  y = Y(y0, roll, yaw²).
+///   U = w⁵,  z = Z(w, y0, r, yaw²),  y = Y(y0, r, yaw²),  r = roll + climb·y.
 ///
 /// For a Hertzian contact z is a parabola of w whose vertex is the height of first touch. Z is bicubic in (w, y0) with
-/// exact derivatives at the nodes, ∂z/∂w = 5 w⁴/F_z and ∂z/∂y = −F_y/F_z, cubic between nodes of roll, and a polynomial
-/// in yaw². At y0 the contact jumps between the same places of the rail whatever roll and yaw
+/// exact derivatives at the nodes, ∂z/∂w = 5 w⁴/F_z and ∂z/∂y = −(F_y − climb·F_roll)/F_z, cubic between nodes of roll,
+/// and a polynomial in yaw². At y0 the contact jumps between the same places of the rail whatever roll and yaw
 /// (docs/theory/contact_table.md).
 struct LoadedTableData {
   std::vector<double> lateral;      ///< nodes of y0, increasing [m]
-  std::vector<double> roll;         ///< nodes, two or more, increasing [rad]
+  std::vector<double> roll;         ///< nodes of r, two or more, increasing [rad]
   std::vector<double> yaw_squared;  ///< nodes, increasing [rad²]; the first may stand for 0
   int levels = 0;                   ///< nodes of w, equally spaced from 0
   double largest_level = 0.0;       ///< [J^(1/5)]
+  double climb = 0.0;               ///< roll that a climbing wheelset loses per lateral shift, 0..10 [rad/m]
   /// y and ∂y/∂y0 at the nodes (lateral, roll, yaw²), quantity fastest [m, 1].
   std::vector<double> shift;
   /// Height of first touch at the nodes (lateral, roll, yaw²) [m].
@@ -54,6 +55,7 @@ struct LoadedTableData {
   [[nodiscard]] double certified_force_error() const noexcept;
   [[nodiscard]] std::size_t parts() const noexcept { return cut.size() + 1; }
   [[nodiscard]] std::size_t columns() const noexcept { return roll.size() * yaw_squared.size(); }
+  [[nodiscard]] double roll_at(double reduced_roll, double y) const noexcept { return reduced_roll - climb * y; }
 };
 
 /// What presses on one part of the rail's surface: numbers, or their derivatives.
@@ -157,6 +159,8 @@ struct LoadedPoseOf {
 /// A larger certified error is that of a pair whose jumps come and go with roll and yaw: forces are not read from such
 /// a table unless asked for.
 inline constexpr double largest_certified_force_error = 0.05;
+
+inline constexpr double largest_climb = 10.0;  ///< [rad/m]
 
 /// @throws InputError "source: name" where shapes disagree or nodes are out of order
 void require_consistent(const LoadedTableData& table, const std::string& source);

@@ -48,6 +48,7 @@ nlohmann::ordered_json loaded_description(const LoadedTableData& loaded) {
   nlohmann::ordered_json j;
   j["lateral"] = {{"low", loaded.lateral.front()}, {"high", loaded.lateral.back()}, {"nodes", loaded.lateral.size()}};
   j["roll"] = {{"low", loaded.roll.front()}, {"high", loaded.roll.back()}, {"nodes", loaded.roll.size()}};
+  j["climb"] = loaded.climb;
   j["yaw"] = {{"high", std::sqrt(loaded.yaw_squared.back())}, {"nodes", loaded.yaw_squared.size()}};
   j["levels"] = loaded.levels;
   j["largest_energy"] = std::pow(loaded.largest_level, 5);
@@ -61,12 +62,12 @@ nlohmann::ordered_json loaded_description(const LoadedTableData& loaded) {
 std::string loaded_text(const LoadedTableData& loaded) {
   const auto percent = [&](const char* name) { return 100.0 * statistic(loaded.statistics, name); };
   std::string text = fmt::format(
-      "  loaded part  {:.3f} .. {:.3f} mm in {} nodes, roll {:.2f} .. {:.2f} mrad, yaw up to {:.2f} mrad, {} levels up "
-      "to "
-      "{:.3g} J, {:.1f} MiB\n",
+      "  loaded part  {:.3f} .. {:.3f} mm in {} nodes, roll {:.2f} .. {:.2f} mrad{}, yaw up to {:.2f} mrad, {} levels "
+      "up to {:.3g} J, {:.1f} MiB\n",
       1e3 * loaded.lateral.front(), 1e3 * loaded.lateral.back(), loaded.lateral.size(), 1e3 * loaded.roll.front(),
-      1e3 * loaded.roll.back(), 1e3 * std::sqrt(loaded.yaw_squared.back()), loaded.levels,
-      std::pow(loaded.largest_level, 5), static_cast<double>(LoadedTable(loaded).bytes()) / 1048576.0);
+      1e3 * loaded.roll.back(), loaded.climb == 0.0 ? "" : fmt::format(" less {:.3g} rad/m of shift", loaded.climb),
+      1e3 * std::sqrt(loaded.yaw_squared.back()), loaded.levels, std::pow(loaded.largest_level, 5),
+      static_cast<double>(LoadedTable(loaded).bytes()) / 1048576.0);
   text += fmt::format(
       "               force above 5 kN off by {:.2f} % (99 %), {:.2f} % (largest); from 1 to 5 kN {:.2f} %, {:.2f} %\n",
       percent("certified.error.force.p99"), percent("certified.error.force.max"),

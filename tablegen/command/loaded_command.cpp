@@ -22,7 +22,11 @@ po::options_description loaded_options() {
   own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "the geometry table of the pair")       //
       ("lateral", text_value("-0.008:0.008")->value_name("LO:HI"), "wheelset lateral shift without roll and yaw")    //
       ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")                               //
+      ("yaw-nodes", text_value("4")->value_name("N"), "nodes of yaw^2, 2 to 9")                                      //
       ("roll", text_value("-0.005:0.005")->value_name("LO:HI"), "wheelset roll against the rail head, LO below HI")  //
+      ("climb", text_value("0")->value_name("RAD/M"),
+       "roll that a wheelset loses per lateral shift as it climbs a flange: --roll is the range of roll + RAD/M * "
+       "shift")  //
       ("roll-spacing", text_value("0.001")->value_name("RAD"),
        "distance of the table's nodes of roll, at most; halved once where pressures between them are off by more than "
        "4 %")  //
@@ -42,7 +46,9 @@ LoadedSweepOptions requested(const TableCommandLine& line) {
   LoadedSweepOptions options;
   options.lateral = line.interval("lateral");
   options.yaw = line.number("yaw");
+  options.yaw_nodes = static_cast<int>(line.whole_number("yaw-nodes", 2, LoadedTable::most_yaws));
   options.roll = line.interval("roll");
+  options.climb = line.number("climb");
   options.roll_spacing = line.number("roll-spacing");
   options.largest_load = line.number("largest-load");
   options.levels = static_cast<int>(line.whole_number("levels", 5, 1000));

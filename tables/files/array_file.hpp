@@ -79,6 +79,8 @@ class ArrayFileWriter {
   void truncate(std::size_t rows);
   /// Records of the last flush.
   [[nodiscard]] std::size_t records() const;
+  /// The name at the end.
+  [[nodiscard]] const std::filesystem::path& file() const noexcept;
 
   /// A one-dimensional dataset of any length, empty at first, that replace() overwrites as a whole.
   void create_slot(std::string_view path, std::string_view unit, std::string_view description);

@@ -187,6 +187,8 @@ void ArrayFileWriter::truncate(std::size_t rows) {
 
 std::size_t ArrayFileWriter::records() const { return impl_->records(); }
 
+const std::filesystem::path& ArrayFileWriter::file() const noexcept { return impl_->file.name(); }
+
 void ArrayFileWriter::create_slot(std::string_view path, std::string_view unit, std::string_view description) {
   assert(impl_->mode == Mode::growing);
   const Section section;

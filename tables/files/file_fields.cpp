@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cctype>
 #include <cmath>
@@ -133,5 +134,16 @@ void FieldWriter::create_growing(const Field& field) {
   const std::vector<std::size_t> shape = dimensions_.shape(field, 0);
   file_.create_growing(field.path, {shape.begin() + 1, shape.end()}, field.unit, field.description);
 }
+
+template <class Value>
+void FieldWriter::require_finite(const Field& field, std::span<const Value> values) const {
+  if (field.values == Field::Values::any) return;
+  const auto wrong = std::find_if_not(values.begin(), values.end(), [](Value value) { return std::isfinite(value); });
+  if (wrong == values.end()) return;
+  throw ComputationError(fmt::format("{}: {}: value {} is {}, not a finite number; the file is not written",
+                                     file_.file().string(), field.path, wrong - values.begin(), *wrong));
+}
+template void FieldWriter::require_finite(const Field&, std::span<const double>) const;
+template void FieldWriter::require_finite(const Field&, std::span<const float>) const;
 
 }  // namespace railtab

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "railtab/tables/files/array_file.hpp"
@@ -70,8 +71,12 @@ class FieldWriter {
   explicit FieldWriter(ArrayFileWriter& file) : file_(file) {}
 
   void set(std::string_view dimension, std::size_t extent) { dimensions_.set(dimension, extent, {}); }
+  /// @throws ComputationError where values that a reader wants finite are not: the file is not replaced
   template <typename Values>
   void write(const Field& field, const Values& values) {
+    if constexpr (std::is_floating_point_v<typename Values::value_type>) {
+      require_finite(field, std::span<const typename Values::value_type>(values));
+    }
     file_.write(field.path, std::span(values), dimensions_.shape(field, values.size()), field.unit, field.description);
   }
   void write(const Field& field, const std::vector<std::string>& texts) {
@@ -81,6 +86,9 @@ class FieldWriter {
   void create_growing(const Field& field);
 
  private:
+  template <class Value>
+  void require_finite(const Field& field, std::span<const Value> values) const;
+
   ArrayFileWriter& file_;
   FileDimensions dimensions_;
 };

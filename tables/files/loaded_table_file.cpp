@@ -1,5 +1,6 @@
 #include "railtab/tables/files/loaded_table_file.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "railtab/tables/files/file_fields.hpp"
@@ -22,7 +23,8 @@ const std::array<TableColumn, 6>& columns() {
   static const std::array<TableColumn, 6> list{
       TableColumn{&LoadedTableData::lateral,
                   {"loaded/lateral", {"lateral"}, "m", "nodes of the reduced lateral shift y0", Values::increasing}},
-      TableColumn{&LoadedTableData::roll, {"loaded/roll", {"roll"}, "rad", "nodes of the roll", Values::increasing}},
+      TableColumn{&LoadedTableData::roll,
+                  {"loaded/roll", {"roll"}, "rad", "nodes of the reduced roll", Values::increasing}},
       TableColumn{&LoadedTableData::yaw_squared,
                   {"loaded/yaw_squared", {"yaw"}, "rad^2", "nodes of the square of the yaw", Values::increasing}},
       TableColumn{
@@ -68,6 +70,7 @@ void write_loaded_table(ArrayFileWriter& file, const LoadedTableData& table) {
   file.attribute(group, "levels", static_cast<std::int64_t>(table.levels));
   file.attribute(group, "largest_level", table.largest_level);
   file.attribute(group, "contact_modulus", table.contact_modulus);
+  if (table.climb != 0.0) file.attribute(group, "climb", table.climb);
   for (const auto& [name, value] : table.statistics) file.attribute("loaded/statistics", name, value);
 }
 
@@ -78,6 +81,10 @@ std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
   table.levels = static_cast<int>(file.whole_number(group, "levels", 3, 10000));
   table.largest_level = in.number(group, "largest_level", 0.0);
   table.contact_modulus = in.number(group, "contact_modulus", 0.0);
+  const std::vector<std::string> attributes = file.attribute_names(group);
+  if (std::find(attributes.begin(), attributes.end(), "climb") != attributes.end()) {
+    table.climb = in.number(group, "climb", 0.0);
+  }
   in.set("levels", static_cast<std::size_t>(table.levels), group);
   const bool cut = file.contains("loaded/cut");
   for (const TableColumn& column : columns()) {
@@ -97,6 +104,7 @@ std::uint64_t loaded_checksum(const LoadedTableData& table, std::uint64_t sum) n
   for (const TableColumn& column : columns()) add(table.*column.values);
   const std::array<double, 3> level{static_cast<double>(table.levels), table.largest_level, table.contact_modulus};
   add(level);
+  if (table.climb != 0.0) add({&table.climb, 1});
   for (const auto& [name, value] : table.statistics) add({&value, 1});
   sum = checksum(std::span(table.pressed), checksum(std::span(table.height), sum));
   return checksum(std::span(table.part), sum);

@@ -86,6 +86,8 @@ def geometry_checksum(table):
             values = loaded[name][()].astype("f8") if name in loaded else numpy.zeros(0)
             add(values.tobytes(), values.size)
         add(numbers_of([loaded.attrs[name] for name in ("levels", "largest_level", "contact_modulus")]), 3)
+        if "climb" in loaded.attrs:
+            add(numbers_of([loaded.attrs["climb"]]), 1)
         for value in statistics_of(loaded):
             add(numbers_of([value]), 1)
         for name, kind in (("height", "<f4"), ("pressed", "<u4"), ("part", "<f4")):

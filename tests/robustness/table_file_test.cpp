@@ -309,6 +309,26 @@ TEST_F(TableFile, LoadedPartsThatDoNotAgreeAreNamed) {
   broken = loaded;
   broken.roll = {1e-3, -1e-3};
   EXPECT_NE(outcome_of(broken).find("loaded/roll: found"), std::string::npos);
+  broken = loaded;
+  broken.climb = 11.0;
+  EXPECT_NE(outcome_of(broken).find(": loaded: climb: found 11"), std::string::npos);
+  // A table with such a number does not replace the one before.
+  broken = loaded;
+  broken.height[5] = std::numeric_limits<float>::quiet_NaN();
+  table.loaded = broken;
+  const std::string before = array_file_checksum(file_);
+  try {
+    write_geometry_table(file_, table);
+    ADD_FAILURE() << "written";
+  } catch (const ComputationError& error) {
+    EXPECT_EQ(error.what(), file_.string() +
+                                ": loaded/height: value 5 is nan, not a finite number; the file is not "
+                                "written");
+  }
+  EXPECT_EQ(array_file_checksum(file_), before);
+  loaded.climb = 0.5;
+  EXPECT_EQ(outcome_of(loaded), "");
+  EXPECT_EQ(read_geometry_table(file_).loaded->climb, 0.5);
 }
 
 TEST_F(TableFile, ArraysOfACreepTableThatDoNotAgreeAreNamed) {

@@ -30,15 +30,18 @@ namespace {
 /// Poses well inside the table, lowered by 10 to 80 µm.
 class Poses {
  public:
+  explicit Poses(double climb = 0.0) : climb_(climb) {}
+
   WheelsetPose next() {
-    const double y = at(-2.6e-3, -0.9e-3), roll = at(-8e-4, 8e-4), yaw = at(-3.5e-3, 3.5e-3);
-    const double shear =
-        0.75 * roll;  // about the height above the rail at which a roll leaves the contact in its place
-    return {y + shear, s1002_on_60e1().touch_height(y + shear, roll, yaw) + at(1e-5, 8e-5), roll, yaw};
+    const double y0 = at(-2.6e-3, -0.9e-3), reduced_roll = at(-8e-4, 8e-4), yaw = at(-3.5e-3, 3.5e-3);
+    constexpr double height = 0.75;  // above the rail, at which a roll leaves the contact about in its place [m]
+    const double y = y0 + height / (1.0 + height * climb_) * reduced_roll, roll = reduced_roll - climb_ * y;
+    return {y, s1002_on_60e1().touch_height(y, roll, yaw) + at(1e-5, 8e-5), roll, yaw};
   }
 
  private:
   double at(double low, double high) { return low + (high - low) * uniform_(random_); }
+  double climb_;
   std::mt19937_64 random_{20261122};
   std::uniform_real_distribution<double> uniform_;
 };
@@ -51,7 +54,7 @@ WheelsetPose moved(const WheelsetPose& p, int coordinate, double by) {
 }
 
 void expect_derivatives_of_the_energy(const LoadedTable& table) {
-  Poses poses;
+  Poses poses(table.data().climb);
   int compared = 0;
   for (int n = 0; n < 200; ++n) {
     const WheelsetPose pose = poses.next();
@@ -147,9 +150,8 @@ TEST(LoadedTable, SquaresOfPressuresAreLinear) {
   }
 }
 
-TEST(LoadedTable, AgreesWithTheHalfSpaceSolution) {
-  const LoadedTable table(tread_table());
-  Poses poses;
+void expect_the_half_space_solution(const LoadedTable& table) {
+  Poses poses(table.data().climb);
   for (int n = 0; n < 25; ++n) {
     const WheelsetPose pose = poses.next();
     const LoadedLookup found = look(table, pose);
@@ -170,6 +172,20 @@ TEST(LoadedTable, AgreesWithTheHalfSpaceSolution) {
     EXPECT_NEAR(part.s_rail, band.s_rail, 0.05 * band.b);
     EXPECT_NEAR(part.pressure, exact.largest_pressure, 0.04 * exact.largest_pressure);
   }
+}
+
+TEST(LoadedTable, AgreesWithTheHalfSpaceSolution) { expect_the_half_space_solution(LoadedTable(tread_table())); }
+
+// A wheelset shifted to the left by 2 mm rolls by 1.5 mrad, which is beyond the roll of a table that does not follow.
+TEST(LoadedTable, FollowsAWheelsetThatClimbs) {
+  LoadedSweepOptions options = tread_options();
+  options.climb = 0.75;
+  const LoadedTable table(sweep_loaded(s1002_on_60e1(), options)), other(tread_table());
+  expect_derivatives_of_the_energy(table);
+  expect_the_half_space_solution(table);
+  const double y = -2e-3, roll = 1.5e-3, z = s1002_on_60e1().touch_height(y, roll, 0.0) + 5e-5;
+  EXPECT_EQ(table.lookup(y, z, roll, 0.0).table_share, 1.0);
+  EXPECT_EQ(other.lookup(y, z, roll, 0.0).table_share, 0.0);
 }
 
 TEST(LoadedTable, ForcesDoNoWorkOnClosedPaths) {
@@ -278,6 +294,7 @@ TEST(LoadedTable, RejectsArraysThatDoNotFit) {
   broken([](LoadedTableData& d) { d.pressed.front() = 1U << 20; });
   broken([](LoadedTableData& d) { d.part.resize(d.part.size() / 2); });
   broken([](LoadedTableData& d) { d.levels = 2; });
+  broken([](LoadedTableData& d) { d.climb = std::nan(""); });
   broken([](LoadedTableData& d) { d.largest_level = std::nan(""); });
   broken([](LoadedTableData& d) { d.cut.assign(20, 0.0); });
 }
@@ -334,6 +351,7 @@ TEST(LoadedSweep, RejectsOptionsOutOfRange) {
   broken([](LoadedSweepOptions& o) { o.levels = 4; });
   broken([](LoadedSweepOptions& o) { o.roll_spacing = 0.0; });
   broken([](LoadedSweepOptions& o) { o.largest_load = 0.0; });
+  broken([](LoadedSweepOptions& o) { o.climb = -0.5; });
 }
 
 TEST(ContactJumps, OfTheStandardPairAreThree) {

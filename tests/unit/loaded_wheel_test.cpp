@@ -134,6 +134,7 @@ const ContactGeometry& geometry_over_jump() {
   static const ContactGeometry geometry = [] {
     LoadedSweepOptions options = tread_options();
     options.lateral = {-0.6e-3, 1.0e-3};
+    options.climb = 0.2;
     options.yaw_nodes = 4;  // with four nodes of roll as in ordinary tables
     options.force_error = 0.1;
     options.light_error = 0.1;

@@ -1,9 +1,13 @@
 // Forces of a loaded table against CONTACT's loaded cases and against half-space solutions. Not a test:
 //
-//     loaded_table_study TABLE.h5 REFERENCE FOLDER
+//     loaded_table_study TABLE.h5 CLIMBING.h5 REFERENCE FOLDER
 //
 // TABLE.h5 is a geometry table with a loaded part of the profiles that CONTACT used (profiles/MBench_*), of steel with
-// G = 82 GPa; REFERENCE holds contact_loaded/. Writes FOLDER/loaded_table.csv: differences by class, of ellipses by
+// G = 82 GPa; CLIMBING.h5 one whose loaded part has all wheels of set C, by
+//
+//     tablegen loaded CLIMBING.h5 --modulus 209.92e9 --lateral=-0.0126:0.0126 --climb 0.75 --yaw 0.027 --yaw-nodes 6
+//
+// REFERENCE holds contact_loaded/. Writes FOLDER/loaded_table.csv: differences by class, of ellipses by
 // their width, of two merging parts by the depth of the saddle between them, steps of the force along random lines,
 // work on closed paths.
 
@@ -60,7 +64,9 @@ PatchCreepage mean_creepage(const LoadedContact& c, const WheelRailPair& pair, c
 
 class Study {
  public:
-  Study(const fs::path& table, const fs::path& reference) : reference_(reference / "contact_loaded") {
+  /// @param differences that it adds to
+  Study(const fs::path& table, const fs::path& reference, Differences& differences)
+      : reference_(reference / "contact_loaded"), differences_(differences) {
     GeometryTableData data = read_geometry_table(table);
     if (!data.loaded) throw std::runtime_error(table.string() + " has no loaded part");
     loaded_ = std::make_shared<const LoadedTable>(std::move(*data.loaded));
@@ -129,7 +135,8 @@ class Study {
     }
   }
 
-  void wheelset() {
+  /// @param set name of what is within the table
+  void wheelset(const std::string& set) {
     for (const Row& row : read_rows(reference_ / "C_wheels.csv")) {
       const double side = row.text("side") == "R" ? 1.0 : -1.0;
       WheelsetMotion motion = placed(side * row["y"], side * row["roll"], side * row["yaw"]);
@@ -138,12 +145,12 @@ class Study {
       const std::string kind = kind_of(std::atan2(row["fy"], row["load"]), row["bands_1pct"]);
       const double approach = (motion.displacement[2] - row["z_ws"]) / (row["z_ws"] - touch),
                    lateral = (side * force.rail[0] - row["fy"]) / row["load"];
-      differences_.add("C in runs", kind, "approach", approach);
-      differences_.add("C in runs", kind, "lateral force", lateral);
+      differences_.add(set + " in runs", kind, "approach", approach);
+      differences_.add(set + " in runs", kind, "lateral force", lateral);
       if (!answered(motion)) continue;
-      differences_.add("C", kind, "approach", approach);
-      differences_.add("C", kind, "lateral force", lateral);
-      differences_.add("C", kind, "largest pressure", lookup(motion).largest_pressure() / row["pmax"] - 1.0);
+      differences_.add(set, kind, "approach", approach);
+      differences_.add(set, kind, "lateral force", lateral);
+      differences_.add(set, kind, "largest pressure", lookup(motion).largest_pressure() / row["pmax"] - 1.0);
     }
   }
 
@@ -276,8 +283,10 @@ class Study {
     return "# Forces of a loaded table: absolute differences from CONTACT's loaded cases, relative to its value "
            "(forces "
            "of\n# set A, of ellipses and of merging parts in mu F_n, of set B in the normal force, lateral force of "
-           "set C in the load).\n# A, B, C: wheels within the table; in runs: all, beyond the table by patches. Steps "
-           "along lines, work on closed paths\n# over its amount. Made by tests/validation/loaded_table_study, " +
+           "set C in the load).\n# A, B, C: wheels within the table; climbing: within a table that follows a wheelset; "
+           "in "
+           "runs: all, beyond the table by\n# patches. Steps along lines, work on closed paths over its amount. Made "
+           "by tests/validation/loaded_table_study, " +
            fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))) +
            "\nset,kind,quantity,cases,mean,p95,largest\n" + differences_.csv();
   }
@@ -444,7 +453,7 @@ class Study {
   std::unique_ptr<ContactSearch> search_;
   std::unique_ptr<ContactGeometry> geometry_;
   WheelContactModel model_, frictionless_;
-  Differences differences_;
+  Differences& differences_;
   std::mt19937_64 random_{20261122};
   std::uniform_real_distribution<double> uniform_;
 };
@@ -452,20 +461,22 @@ class Study {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 4) {
-    std::fprintf(stderr, "usage: loaded_table_study TABLE.h5 REFERENCE FOLDER\n");
+  if (count != 5) {
+    std::fprintf(stderr, "usage: loaded_table_study TABLE.h5 CLIMBING.h5 REFERENCE FOLDER\n");
     return 2;
   }
   try {
-    Study study(arguments[1], arguments[2]);
+    Differences differences;
+    Study study(arguments[1], arguments[3], differences), climbing(arguments[2], arguments[3], differences);
     study.rolling();
     study.frictionless();
-    study.wheelset();
+    study.wheelset("C");
     study.ellipses(1000);
     study.merging(3000);
     study.lines(10000);
     study.closed_paths(1000);
-    write_text_file(fs::path(arguments[3]) / "loaded_table.csv", study.summary(), "# Forces of a loaded table");
+    climbing.wheelset("C climbing");
+    write_text_file(fs::path(arguments[4]) / "loaded_table.csv", study.summary(), "# Forces of a loaded table");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "loaded_table_study: %s\n", error.what());
     return 1;
