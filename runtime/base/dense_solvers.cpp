@@ -39,6 +39,12 @@ GeneralSpectrum general_spectrum(const Matrix& A) {
   return {Eigen::VectorXcd::Constant(A.rows(), not_found), Eigen::MatrixXcd::Constant(A.rows(), A.rows(), not_found)};
 }
 
+Eigen::VectorXcd general_eigenvalues(const Matrix& A) {
+  const Eigen::EigenSolver<Matrix> eigen(A, false);
+  return eigen.info() == Eigen::Success ? eigen.eigenvalues()
+                                        : Eigen::VectorXcd(Eigen::VectorXcd::Constant(A.rows(), not_found));
+}
+
 Matrix dense_inverse(const Matrix& A) { return A.partialPivLu().inverse(); }
 
 Matrix dense_solution(const Matrix& A, const Matrix& B) { return A.partialPivLu().solve(B); }

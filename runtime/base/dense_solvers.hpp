@@ -26,6 +26,8 @@ struct GeneralSpectrum {
   Eigen::MatrixXcd vectors;  ///< of unit length, one per column
 };
 [[nodiscard]] GeneralSpectrum general_spectrum(const Eigen::MatrixXd& A);
+/// Its eigenvalues alone, in less time.
+[[nodiscard]] Eigen::VectorXcd general_eigenvalues(const Eigen::MatrixXd& A);
 
 /// Inverse by LU decomposition with partial pivoting, of a regular matrix.
 [[nodiscard]] Eigen::MatrixXd dense_inverse(const Eigen::MatrixXd& A);

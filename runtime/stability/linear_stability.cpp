@@ -7,6 +7,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -20,6 +21,17 @@ namespace railtab {
 namespace {
 
 constexpr Eigen::Index y_dof = 1, yaw_dof = 5;
+constexpr double slowest = 0.05;  // rad/s: the angles of the wheelsets' rotations are free
+
+LeastStableMotion motion_of(const std::complex<double>& value, double speed) {
+  return {speed, value.real(), value.imag() / (2.0 * std::numbers::pi), -value.real() / std::abs(value)};
+}
+
+std::vector<int> all_rows(const VehicleModel& vehicle) {
+  std::vector<int> rows(index(vehicle.dofs()));
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
 
 // Adds what the contacts do to the matrices of the running vehicle.
 void add_contacts(const VsiModel& model, std::optional<double> conicity, VehicleModel& running) {
@@ -74,14 +86,12 @@ VehicleModel running_vehicle(const VsiModel& model, double speed, std::optional<
 
 std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed, std::optional<double> conicity) {
   const VehicleModel running = running_vehicle(model, speed, conicity);
-  std::vector<int> rows, massive;
+  std::vector<int> massive;
   for (int row = 0; row < running.dofs(); ++row) {
-    rows.push_back(row);
     if (running.mass(row, row) > 0.0) massive.push_back(row);
   }
-  const MotionSpectrum spectrum = motion_spectrum(running, rows);
+  const MotionSpectrum spectrum = motion_spectrum(running, all_rows(running));
   const Eigen::VectorXd lateral = lateral_shares(running, spectrum.shapes);
-  constexpr double slowest = 0.05;  // rad/s: the angles of the wheelsets' rotations are free
   std::vector<LinearShape> shapes;
   for (Eigen::Index k = 0; k < spectrum.values.size(); ++k) {
     const std::complex<double> value = spectrum.values[k];
@@ -94,11 +104,18 @@ std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed, std
   return shapes;
 }
 
+bool any_motion_grows(const VsiModel& model, double speed, std::optional<double> conicity) {
+  const VehicleModel running = running_vehicle(model, speed, conicity);
+  const Eigen::VectorXcd values = motion_eigenvalues(running, all_rows(running));
+  return std::any_of(values.begin(), values.end(), [&](const std::complex<double>& value) {
+    return std::abs(value) >= slowest && motion_of(value, speed).grows();
+  });
+}
+
 LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity, int motion) {
   const std::vector<LinearShape> shapes = lateral_shapes(model, speed, conicity);
   if (index(motion) > shapes.size()) return {.speed = speed, .growth = -std::numeric_limits<double>::infinity()};
-  const std::complex<double> value = shapes[index(motion - 1)].value;
-  return {speed, value.real(), value.imag() / (2.0 * std::numbers::pi), -value.real() / std::abs(value)};
+  return motion_of(shapes[index(motion - 1)].value, speed);
 }
 
 LinearCriticalSpeed linear_critical_speed(const VsiModel& model, const SpeedSearch& search,

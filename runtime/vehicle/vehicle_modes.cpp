@@ -123,6 +123,10 @@ MotionSpectrum motion_spectrum(const VehicleModel& vehicle, const std::vector<in
   return {spectrum.values, spectrum.vectors.topRows(static_cast<Eigen::Index>(parts.massive.size()))};
 }
 
+Eigen::VectorXcd motion_eigenvalues(const VehicleModel& vehicle, const std::vector<int>& rows) {
+  return general_eigenvalues(state_matrix(vehicle, by_mass(vehicle, rows)));
+}
+
 std::vector<VehicleMode> natural_modes(const VehicleModel& vehicle, int count) {
   const Rows rows = moving_rows(vehicle);
   const auto n = static_cast<Eigen::Index>(rows.massive.size());

@@ -27,5 +27,7 @@ struct MotionSpectrum {
   Eigen::MatrixXcd shapes;  ///< displacements of the rows with mass, one column per value
 };
 [[nodiscard]] MotionSpectrum motion_spectrum(const VehicleModel& vehicle, const std::vector<int>& rows);
+/// Its values alone.
+[[nodiscard]] Eigen::VectorXcd motion_eigenvalues(const VehicleModel& vehicle, const std::vector<int>& rows);
 
 }  // namespace railtab

@@ -68,7 +68,7 @@ void fill_patches(const WheelRailPair& pair, const ContactSolution& contact, std
 
 }  // namespace
 
-void fill_record(const VsiModel& model, const VsiState& state, StepRecord& record) {
+void fill_record(const VsiModel& model, const VsiState& state, StepRecord& record, bool contact_points) {
   record.time = state.time;
   record.position = model.wheelset_x(0, state.time);
   const auto wheels = static_cast<std::size_t>(2 * model.wheelsets());
@@ -77,7 +77,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
     WheelRecord& w = record.wheels[wheel];
     w = {};
-    if (model.geometry) {
+    if (model.geometry && contact_points) {
       const ContactGeometry& geometry = model.geometry_of(static_cast<int>(wheel / 2));
       fill_patches(geometry.pair(), state.contact, wheel, w);
       w.from_table = answered_by_table(geometry, state.contact.contact[wheel]) ? 1 : 0;

@@ -101,7 +101,7 @@ class Run {
   void emit() {
     if (!observer_.record) return;
     const Stopwatch watch = integrator_.times().measure(Phase::output);
-    fill_record(model_, state_, record_);
+    fill_record(model_, state_, record_, observer_.contact_points);
     observer_.record(record_);
   }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <stdexcept>
 
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 class CreepShardFile : public testing::InFolder {
  protected:
-  /// The message with which a shard of such cases is rejected, though its seal is right.
+  /// The message with which a shard of such cases is not written, or rejected though its seal is right.
   [[nodiscard]] std::string message_for(const std::vector<SolvedCreepCase>& solved, double poisson = 0.28) const {
     CreepShardHeader header;
     header.job.layout.poisson = poisson;
@@ -20,10 +21,10 @@ class CreepShardFile : public testing::InFolder {
     header.case_list = "0123456789abcdef";
     header.cases = 4;
     const std::filesystem::path file = folder_ / "shard.h5";
-    write_creep_shard(file, header, solved);
     try {
+      write_creep_shard(file, header, solved);
       EXPECT_EQ(read_creep_shard(file, creep_shard_filetype).solved.size(), solved.size());
-    } catch (const InputError& error) {
+    } catch (const std::runtime_error& error) {
       return error.what();
     }
     return "";
@@ -41,7 +42,7 @@ TEST_F(CreepShardFile, NumbersThatAreNotFiniteAreNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<SolvedCreepCase> solved(4);
   solved[2].force.moment = nan;
-  EXPECT_NE(message_for(solved).find("moment: found nan as value 2"), std::string::npos) << message_for(solved);
+  EXPECT_NE(message_for(solved).find("moment: value 2 is nan, not a finite"), std::string::npos) << message_for(solved);
   solved[2].force.moment = 0.0;
   EXPECT_NE(message_for(solved, nan).find("options, attribute poisson: found nan"), std::string::npos);
 }

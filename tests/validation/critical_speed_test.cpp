@@ -110,6 +110,8 @@ TEST(LinearCriticalSpeed, OfLibraryVehiclesIsThatOfTimeSimulation) {
     ASSERT_GT(above, 0.0) << vehicle;
     const double simulated = v * (0.99 + 0.02 * below / (below - above));
     EXPECT_NEAR(simulated / v, 1.0, 1e-3) << vehicle;
+    EXPECT_FALSE(any_motion_grows(model, 0.99 * v)) << vehicle;
+    EXPECT_TRUE(any_motion_grows(model, 1.01 * v)) << vehicle;
   }
 }
 
@@ -120,6 +122,7 @@ TEST(LinearCriticalSpeed, IsNotThatOfUndampedMotions) {
     ASSERT_TRUE(found.critical) << wagon;
     EXPECT_LT(found.critical->frequency, 2.0) << wagon;
     EXPECT_GT(found.critical->speed, 5.0) << wagon;
+    EXPECT_FALSE(any_motion_grows(on_s1002(wagon), 0.99 * found.critical->speed)) << wagon;
   }
 }
 
