@@ -33,7 +33,7 @@ struct SurfaceOverlap {
 /// How the overlap is divided.
 struct ContactElementOptions {
   int across_narrowest = 40;  ///< elements along and across the narrowest part that counts in full, 4..1000
-  int most = 60000;           ///< elements altogether, 64..4000000
+  int most = 60000;           ///< elements altogether, 64..4000000, ordinarily less than a second's work
   /// A part with a smaller share of the overlap's volume than this counts less: as many elements as the square root
   /// of its share in this one, so that a part that begins changes the elements' size continuously; 1e-6..1.
   double full_share = 0.1;
@@ -41,6 +41,9 @@ struct ContactElementOptions {
   /// @throws InputError
   void validate() const;
 };
+
+/// ContactElementOptions::most where two narrow contacts lie in a wide box: some seconds each.
+inline constexpr int most_elements = 500000;
 
 /// The narrowest part needs more elements than allowed.
 class TooManyElements : public std::runtime_error {

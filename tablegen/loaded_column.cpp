@@ -92,12 +92,11 @@ LoadedContact solved(const ContactSearch& search, const WheelsetPose& pose, Load
     try {
       return loaded_contact(search, pose, options, refinements);
     } catch (const TooManyElements&) {
-      constexpr int fewest = 4;     // ContactElementOptions
-      constexpr int most = 500000;  // some seconds each
+      constexpr int fewest = 4;  // ContactElementOptions
       if (options.elements.across_narrowest > fewest) {
         options.elements.across_narrowest = std::max(fewest, options.elements.across_narrowest * 2 / 3);
-      } else if (options.elements.most < most) {
-        options.elements.most = most;
+      } else if (options.elements.most < most_elements) {
+        options.elements.most = most_elements;
       } else {
         throw;
       }
@@ -131,7 +130,7 @@ LoadedContact near_level(const ContactSearch& search, WheelsetPose pose, double 
       pose.y, pose.roll, pose.yaw, std::pow(w, 5)));
 }
 
-/// ∂U/∂roll [N m].
+/// M_roll = ∂U/∂roll [N m].
 double roll_moment(const ContactSearch& search, const LoadedContact& contact) {
   const WheelsetCentre centre = wheelset_centre(search.pair(), contact.pose);
   return contact.on_rail.moment_about({0.0, centre.y, centre.z}).x();
@@ -142,7 +141,7 @@ struct ColumnSolutions {
   // from first touch on
   std::vector<double> lowering{0.0};   ///< [m]
   std::vector<double> force{0.0};      ///< F_z [N]
-  std::vector<double> slope;           ///< (F_y − climb·F_roll)/F_z
+  std::vector<double> slope;           ///< (F_y − climb·M_roll)/F_z
   std::vector<LoadedContact> contact;  ///< without first touch
 };
 

@@ -11,7 +11,7 @@ namespace railtab {
 struct LoadedNode {
   double z = 0.0;                ///< height of the wheelset centre [m]
   double z_w = 0.0;              ///< ∂z/∂w at constant pose otherwise, 5 w⁴/F_z
-  double z_y = 0.0;              ///< ∂z/∂y at constant w and reduced roll, −(F_y − climb·F_roll)/F_z
+  double z_y = 0.0;              ///< ∂z/∂y at constant w and reduced roll, −(F_y − climb·M_roll)/F_z
   double force = 0.0;            ///< F_z on the rail [N]
   std::vector<LoadedPart> part;  ///< reduced as in LoadedTableData
 };

@@ -26,7 +26,10 @@ void LoadedSweepOptions::validate() const {
   require(lateral.low < lateral.high, "--lateral", lateral.high, "more than the lower end");
   require(roll.low >= -0.1 && roll.high <= 0.1 && roll.low < roll.high, "--roll", roll.low,
           "LO:HI within +-0.1 rad, LO below HI: moments are derivatives with respect to roll");
-  require(climb >= 0.0 && climb <= largest_climb, "--climb", climb, "0..10 rad/m");
+  const double farthest = std::max(std::abs(lateral.low), std::abs(lateral.high));
+  const double largest_roll = std::max(std::abs(roll.low), std::abs(roll.high)) + climb * farthest;
+  require(climb >= 0.0 && climb <= largest_climb && largest_roll <= 0.1, "--climb", climb,
+          "0..2 rad/m, and |roll| + climb * |shift| at most 0.1 rad");
   require(yaw >= 0.0 && yaw <= 0.2, "--yaw", yaw, "0..0.2 rad");
   require(largest_load >= 1e3 && largest_load <= 1e7, "--largest-load", largest_load, "1e3..1e7 N");
   require(levels >= 5 && levels <= 1000, "--levels", levels, "5..1000");

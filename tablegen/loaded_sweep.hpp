@@ -12,12 +12,14 @@ namespace railtab {
 
 /// What the loaded part of a table covers, and how finely.
 struct LoadedSweepOptions {
-  Interval lateral{-0.008, 0.008};  ///< of the reduced lateral shift y0, low < high, within ±0.1 [m]
-  Interval roll{-0.005, 0.005};     ///< of the wheelset against the rail head, within ±0.1 [rad]; low < high
-  double climb = 0.0;               ///< as of LoadedTableData: `roll` is the range of roll + climb·y
-  double yaw = 0.010;               ///< largest, 0..0.2 [rad]; 0: without yaw
-  double largest_load = 300e3;      ///< vertical force at y = 0 up to which energies are tabulated, 1e3..1e7 [N]
-  int levels = 33;                  ///< of energy, 5..1000
+  /// Of the reduced lateral shift y0: of the wheelset at reduced roll 0, low < high, within ±0.1 [m].
+  Interval lateral{-0.008, 0.008};
+  /// Of the wheelset against the rail head, within ±0.1 [rad], low < high; with climb that of roll + climb·y.
+  Interval roll{-0.005, 0.005};
+  double climb = 0.0;           ///< as of LoadedTableData; |roll| + climb·|lateral| at most 0.1 rad
+  double yaw = 0.010;           ///< largest, 0..0.2 [rad]; 0: without yaw
+  double largest_load = 300e3;  ///< vertical force at y = 0 up to which energies are tabulated, 1e3..1e7 [N]
+  int levels = 33;              ///< of energy, 5..1000
   /// Of nodes of roll at most, 3 nodes at least, 1e-5..0.1 [rad]. Halved once where the largest pressure under 10 kN,
   /// half-way between two of them and without yaw, is off by more than 4 %.
   double roll_spacing = 1e-3;

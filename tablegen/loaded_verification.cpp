@@ -74,6 +74,7 @@ LoadedVerification verify_loaded_table(const ContactSearch& search, const Loaded
   LoadedContactOptions contact;
   contact.wheel = contact.rail = options.material;
   contact.elements.across_narrowest = options.elements;
+  contact.elements.most = most_elements;
   contact.validate();
   std::mt19937_64 random(options.seed);
   std::uniform_real_distribution<double> uniform;

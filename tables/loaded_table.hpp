@@ -23,7 +23,7 @@ namespace railtab {
 ///   U = w⁵,  z = Z(w, y0, r, yaw²),  y = Y(y0, r, yaw²),  r = roll + climb·y.
 ///
 /// For a Hertzian contact z is a parabola of w whose vertex is the height of first touch. Z is bicubic in (w, y0) with
-/// exact derivatives at the nodes, ∂z/∂w = 5 w⁴/F_z and ∂z/∂y = −(F_y − climb·F_roll)/F_z, cubic between nodes of roll,
+/// exact derivatives at the nodes, ∂z/∂w = 5 w⁴/F_z and ∂z/∂y = −(F_y − climb·M_roll)/F_z, cubic between nodes of roll,
 /// and a polynomial in yaw². At y0 the contact jumps between the same places of the rail whatever roll and yaw
 /// (docs/theory/contact_table.md).
 struct LoadedTableData {
@@ -32,7 +32,7 @@ struct LoadedTableData {
   std::vector<double> yaw_squared;  ///< nodes, increasing [rad²]; the first may stand for 0
   int levels = 0;                   ///< nodes of w, equally spaced from 0
   double largest_level = 0.0;       ///< [J^(1/5)]
-  double climb = 0.0;               ///< roll that a climbing wheelset loses per lateral shift, 0..10 [rad/m]
+  double climb = 0.0;               ///< roll that a climbing wheelset loses per lateral shift, 0..2 [rad/m]
   /// y and ∂y/∂y0 at the nodes (lateral, roll, yaw²), quantity fastest [m, 1].
   std::vector<double> shift;
   /// Height of first touch at the nodes (lateral, roll, yaw²) [m].
@@ -160,7 +160,8 @@ struct LoadedPoseOf {
 /// a table unless asked for.
 inline constexpr double largest_certified_force_error = 0.05;
 
-inline constexpr double largest_climb = 10.0;  ///< [rad/m]
+/// [rad/m]. A wheelset on two rails rolls by some 1.5 rad/m where it climbs.
+inline constexpr double largest_climb = 2.0;
 
 /// @throws InputError "source: name" where shapes disagree or nodes are out of order
 void require_consistent(const LoadedTableData& table, const std::string& source);

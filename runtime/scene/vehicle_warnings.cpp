@@ -84,29 +84,24 @@ std::string text_of(const LeastStableMotion& motion) {
   return fmt::format("a small motion without oscillation grows by {:.3g} per second", motion.growth);
 }
 
-/// The least stable motion, if one grows.
-LeastStableMotion growing_motion(const VsiModel& model, double speed, std::optional<double> conicity = {}) {
-  return any_motion_grows(model, speed, conicity) ? least_stable_motion(model, speed, conicity) : LeastStableMotion{};
-}
-
 /// Growth of small motions at rest, and with the equivalent conicity of 3 mm, at which vehicles are assessed [EN15302]:
 /// a sign, no proof, of limit cycles below the critical speed at rest.
 void add_growth(const HuntingSystem& system, const VsiModel& contacts, double speed, Warnings& list) {
   constexpr double to_kmh = 3.6, amplitude = 3e-3;
   const VsiModel model = stability_model(system.scene, contacts, system.first_wheelset);
-  if (const LeastStableMotion at_rest = growing_motion(model, speed); at_rest.grows()) {
+  if (const std::optional<LeastStableMotion> at_rest = growing_motion(model, speed)) {
     list.push_back(fmt::format(
         "the train runs at {:.6g} km/h, above a linear critical speed of {} on these profiles: {}, until flanges or "
         "slip bound it (vsi critical-speed finds the speed)",
-        to_kmh * speed, system.name, text_of(at_rest)));
+        to_kmh * speed, system.name, text_of(*at_rest)));
     return;
   }
   const std::optional<double> conicity = model.geometry->equivalent_conicity(amplitude);
   if (!conicity) return;
-  const LeastStableMotion disturbed = growing_motion(model, speed, conicity);
-  if (!disturbed.grows()) return;
-  const std::string motion = disturbed.frequency > 0.0
-                                 ? fmt::format("into a limit cycle of about {:.3g} Hz", disturbed.frequency)
+  const std::optional<LeastStableMotion> disturbed = growing_motion(model, speed, conicity);
+  if (!disturbed) return;
+  const std::string motion = disturbed->frequency > 0.0
+                                 ? fmt::format("into a limit cycle of about {:.3g} Hz", disturbed->frequency)
                                  : std::string("without oscillation");
   list.push_back(fmt::format(
       "the train runs at {:.6g} km/h, above the critical speed of {} at the equivalent conicity {:.3g} of 3 mm: small "

@@ -73,19 +73,7 @@ Eigen::VectorXd lateral_shares(const VehicleModel& vehicle, const Eigen::MatrixX
   return lateral.cwiseQuotient(all.cwiseMax(std::numeric_limits<double>::min()));
 }
 
-}  // namespace
-
-VehicleModel running_vehicle(const VsiModel& model, double speed, std::optional<double> conicity) {
-  VsiModel rigid = on_rigid_rails(model, speed);
-  rigid.contact.damping = 0.0;
-  VehicleModel running = rigid.vehicle;
-  running.damping = rigid.vehicle_damping(speed);
-  add_contacts(rigid, conicity, running);
-  return running;
-}
-
-std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed, std::optional<double> conicity) {
-  const VehicleModel running = running_vehicle(model, speed, conicity);
+std::vector<LinearShape> lateral_shapes(const VehicleModel& running) {
   std::vector<int> massive;
   for (int row = 0; row < running.dofs(); ++row) {
     if (running.mass(row, row) > 0.0) massive.push_back(row);
@@ -104,12 +92,32 @@ std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed, std
   return shapes;
 }
 
-bool any_motion_grows(const VsiModel& model, double speed, std::optional<double> conicity) {
+}  // namespace
+
+VehicleModel running_vehicle(const VsiModel& model, double speed, std::optional<double> conicity) {
+  VsiModel rigid = on_rigid_rails(model, speed);
+  rigid.contact.damping = 0.0;
+  VehicleModel running = rigid.vehicle;
+  running.damping = rigid.vehicle_damping(speed);
+  add_contacts(rigid, conicity, running);
+  return running;
+}
+
+std::vector<LinearShape> lateral_shapes(const VsiModel& model, double speed, std::optional<double> conicity) {
+  return lateral_shapes(running_vehicle(model, speed, conicity));
+}
+
+std::optional<LeastStableMotion> growing_motion(const VsiModel& model, double speed, std::optional<double> conicity) {
   const VehicleModel running = running_vehicle(model, speed, conicity);
   const Eigen::VectorXcd values = motion_eigenvalues(running, all_rows(running));
-  return std::any_of(values.begin(), values.end(), [&](const std::complex<double>& value) {
+  const bool any = std::any_of(values.begin(), values.end(), [&](const std::complex<double>& value) {
     return std::abs(value) >= slowest && motion_of(value, speed).grows();
   });
+  if (!any) return {};
+  const std::vector<LinearShape> shapes = lateral_shapes(running);
+  if (shapes.empty()) return {};
+  const LeastStableMotion least = motion_of(shapes.front().value, speed);
+  return least.grows() ? std::optional(least) : std::nullopt;
 }
 
 LeastStableMotion least_stable_motion(const VsiModel& model, double speed, std::optional<double> conicity, int motion) {

@@ -41,9 +41,10 @@ struct LeastStableMotion {
 [[nodiscard]] LeastStableMotion least_stable_motion(const VsiModel& model, double speed,
                                                     std::optional<double> conicity = {}, int motion = 1);
 
-/// Whether any motion of running_vehicle() grows, lateral or not: if not, the least stable one does not either, which
-/// takes longer to find. @pre, @throws as running_vehicle()
-[[nodiscard]] bool any_motion_grows(const VsiModel& model, double speed, std::optional<double> conicity = {});
+/// least_stable_motion() if it grows. Shapes, which tell lateral motions from others, are computed only where some
+/// motion grows. @pre, @throws as running_vehicle()
+[[nodiscard]] std::optional<LeastStableMotion> growing_motion(const VsiModel& model, double speed,
+                                                              std::optional<double> conicity = {});
 
 /// An eigenvalue λ [1/s] of running_vehicle() and its shape.
 struct LinearShape {

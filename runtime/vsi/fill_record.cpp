@@ -77,6 +77,7 @@ void fill_record(const VsiModel& model, const VsiState& state, StepRecord& recor
   for (std::size_t wheel = 0; wheel < wheels; ++wheel) {
     WheelRecord& w = record.wheels[wheel];
     w = {};
+    if (!contact_points) w.from_table = -1;
     if (model.geometry && contact_points) {
       const ContactGeometry& geometry = model.geometry_of(static_cast<int>(wheel / 2));
       fill_patches(geometry.pair(), state.contact, wheel, w);

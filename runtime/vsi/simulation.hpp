@@ -22,7 +22,7 @@ struct RunObserver {
   std::function<void()> ready;                     ///< once, when the set-up is over and the first step begins
   /// The initial state, then every output.every steps, and the last step in any case. The listener may change it.
   std::function<void(StepRecord&)> record;
-  bool contact_points = true;                  ///< whether records say where the wheels touch the rails
+  bool contact_points = true;                  ///< whether records have the wheels' patches
   std::function<void(const VsiState&)> state;  ///< the initial state and that after every step, not of halved ones
   /// After every step, halved ones too: the energy account, kept only where somebody listens. Not for wheels that
   /// follow the rails.
@@ -41,7 +41,7 @@ struct RunObserver {
 [[nodiscard]] RunSummary simulate(OperatorLevels& operators, const IntegrationParameters& integration, double duration,
                                   int record_every, VsiState& state, const RunObserver& observer);
 
-/// The record of a state. @param contact_points where false, zeros stand for where the wheels touch the rails
+/// The record of a state. @param contact_points where false, wheels have no patches and no word on the table's part
 void fill_record(const VsiModel& model, const VsiState& state, StepRecord& record, bool contact_points = true);
 
 }  // namespace railtab

@@ -13,7 +13,7 @@ namespace railtab {
 struct WheelRecord {
   double Q = 0, Y = 0, X = 0;
   int patches = 0;                 ///< patches in contact
-  int from_table = 0;              ///< 1: the table alone answered, 0: the online search, -1: the file does not say
+  int from_table = 0;              ///< 1: the table alone answered, 0: the online search, -1: not said
   double y_rail = 0, y_wheel = 0;  ///< of the patch with the largest normal force, own-side profile frames [m]
   double angle = 0;                ///< contact angle of that patch [rad]
   double rolling_radius = 0;       ///< of that patch [m]

@@ -6,6 +6,7 @@
 #include "command/print.hpp"
 #include "command/progress_bar.hpp"
 #include "commands.hpp"
+#include "railtab/runtime/base/input_error.hpp"
 #include "railtab/tablegen/loaded_sweep.hpp"
 #include "railtab/tables/files/geometry_table_file.hpp"
 #include "table_command_line.hpp"
@@ -19,14 +20,15 @@ namespace po = boost::program_options;
 po::options_description loaded_options() {
   const LoadedSweepOptions defaults;
   po::options_description own("Options (SI units)");
-  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "the geometry table of the pair")       //
-      ("lateral", text_value("-0.008:0.008")->value_name("LO:HI"), "wheelset lateral shift without roll and yaw")    //
-      ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")                               //
-      ("yaw-nodes", text_value("4")->value_name("N"), "nodes of yaw^2, 2 to 9")                                      //
-      ("roll", text_value("-0.005:0.005")->value_name("LO:HI"), "wheelset roll against the rail head, LO below HI")  //
+  own.add_options()("file", po::value<std::string>()->value_name("FILE.h5"), "the geometry table of the pair")  //
+      ("lateral", text_value("-0.008:0.008")->value_name("LO:HI"),
+       "wheelset lateral shift at the roll -climb * shift, without yaw")                //
+      ("yaw", text_value("0.010")->value_name("RAD"), "largest wheelset yaw; 0: none")  //
+      ("yaw-nodes", text_value("4")->value_name("N"), "nodes of yaw^2, 2 to 9")         //
+      ("roll", text_value("-0.005:0.005")->value_name("LO:HI"),
+       "wheelset roll against the rail head plus climb * shift, LO below HI")  //
       ("climb", text_value("0")->value_name("RAD/M"),
-       "roll that a wheelset loses per lateral shift as it climbs a flange: --roll is the range of roll + RAD/M * "
-       "shift")  //
+       "roll that a wheelset loses per lateral shift as it climbs a flange")  //
       ("roll-spacing", text_value("0.001")->value_name("RAD"),
        "distance of the table's nodes of roll, at most; halved once where pressures between them are off by more than "
        "4 %")  //
@@ -56,6 +58,9 @@ LoadedSweepOptions requested(const TableCommandLine& line) {
   options.light_error = line.number("light-error");
   options.contact.elements.across_narrowest = static_cast<int>(line.whole_number("elements", 4, 1000));
   options.contact.wheel = options.contact.rail = {line.number("modulus"), line.number("poisson")};
+  if (options.yaw == 0.0 && line.chosen("yaw-nodes")) {
+    throw input_error("--yaw-nodes", "given with --yaw 0", "a range of yaw to divide");
+  }
   options.validate();
   return options;
 }
@@ -73,8 +78,8 @@ void loaded_command(const std::vector<std::string>& arguments) {
     const std::string warning = fmt::format(
         "tablegen loaded: warning: {}: the force above 5 kN is off by {:.2g} % (99 % of its check), more than {:.0f} "
         "%; runs use it only with contact.elastic = \"half-space\". Where the contact jumps may differ too much with "
-        "roll and yaw for one table (smaller --roll, --yaw or --lateral), or nodes be too far apart (--levels, "
-        "--elements, --force-error).\n",
+        "roll and yaw for one table (smaller --roll, --yaw or --lateral, another --climb), or nodes be too far apart "
+        "(--levels, --yaw-nodes, --roll-spacing, --elements, --force-error).\n",
         file, 100.0 * error, 100.0 * largest_certified_force_error);
     print_message(warning);
   }

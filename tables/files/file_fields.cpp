@@ -21,6 +21,11 @@ bool is_number(const std::string& dimension) {
   return std::isdigit(static_cast<unsigned char>(dimension.front())) != 0;
 }
 
+ComputationError not_finite(const ArrayFileWriter& file, std::string_view path, const std::string& found) {
+  return ComputationError(
+      fmt::format("{}: {}: {}, not a finite number; the file is not written", file.file().string(), path, found));
+}
+
 template <class Value>
 void check_values(const ArrayFileReader& file, const Field& field, const std::vector<Value>& values) {
   if (field.values == Field::Values::any) return;
@@ -130,6 +135,11 @@ double FieldReader::number(std::string_view group, std::string_view name, double
                     any ? "a finite number" : fmt::format("{} to {}", low, high));
 }
 
+void FieldWriter::number(std::string_view group, std::string_view name, double value) {
+  if (!std::isfinite(value)) throw not_finite(file_, group, fmt::format("attribute {} is {}", name, value));
+  file_.attribute(group, name, value);
+}
+
 void FieldWriter::create_growing(const Field& field) {
   const std::vector<std::size_t> shape = dimensions_.shape(field, 0);
   file_.create_growing(field.path, {shape.begin() + 1, shape.end()}, field.unit, field.description);
@@ -140,8 +150,7 @@ void FieldWriter::require_finite(const Field& field, std::span<const Value> valu
   if (field.values == Field::Values::any) return;
   const auto wrong = std::find_if_not(values.begin(), values.end(), [](Value value) { return std::isfinite(value); });
   if (wrong == values.end()) return;
-  throw ComputationError(fmt::format("{}: {}: value {} is {}, not a finite number; the file is not written",
-                                     file_.file().string(), field.path, wrong - values.begin(), *wrong));
+  throw not_finite(file_, field.path, fmt::format("value {} is {}", wrong - values.begin(), *wrong));
 }
 template void FieldWriter::require_finite(const Field&, std::span<const double>) const;
 template void FieldWriter::require_finite(const Field&, std::span<const float>) const;

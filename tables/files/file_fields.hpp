@@ -82,6 +82,8 @@ class FieldWriter {
   void write(const Field& field, const std::vector<std::string>& texts) {
     file_.write(field.path, texts, field.description);
   }
+  /// An attribute that FieldReader::number() reads. @throws ComputationError where it is not finite
+  void number(std::string_view group, std::string_view name, double value);
   /// A history: its first dimension, records, grows.
   void create_growing(const Field& field);
 

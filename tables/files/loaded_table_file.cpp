@@ -68,10 +68,10 @@ void write_loaded_table(ArrayFileWriter& file, const LoadedTableData& table) {
   out.write(pressed_field, table.pressed);
   out.write(part_field, table.part);
   file.attribute(group, "levels", static_cast<std::int64_t>(table.levels));
-  file.attribute(group, "largest_level", table.largest_level);
-  file.attribute(group, "contact_modulus", table.contact_modulus);
-  if (table.climb != 0.0) file.attribute(group, "climb", table.climb);
-  for (const auto& [name, value] : table.statistics) file.attribute("loaded/statistics", name, value);
+  out.number(group, "largest_level", table.largest_level);
+  out.number(group, "contact_modulus", table.contact_modulus);
+  if (table.climb != 0.0) out.number(group, "climb", table.climb);
+  for (const auto& [name, value] : table.statistics) out.number("loaded/statistics", name, value);
 }
 
 std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
@@ -83,7 +83,7 @@ std::optional<LoadedTableData> read_loaded_table(const ArrayFileReader& file) {
   table.contact_modulus = in.number(group, "contact_modulus", 0.0);
   const std::vector<std::string> attributes = file.attribute_names(group);
   if (std::find(attributes.begin(), attributes.end(), "climb") != attributes.end()) {
-    table.climb = in.number(group, "climb", 0.0);
+    table.climb = in.number(group, "climb", 0.0, largest_climb);
   }
   in.set("levels", static_cast<std::size_t>(table.levels), group);
   const bool cut = file.contains("loaded/cut");

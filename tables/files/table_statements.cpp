@@ -12,7 +12,7 @@ void write_statements(ArrayFileWriter& file, const TableProvenance& provenance, 
   file.attribute("provenance", "program_version", provenance.program_version);
   file.attribute("provenance", "command_line", provenance.command_line);
   file.attribute("provenance", "created", provenance.created);
-  for (const auto& [name, value] : statistics) file.attribute("statistics", name, value);
+  for (const auto& [name, value] : statistics) FieldWriter(file).number("statistics", name, value);
   file.attribute("", "checksum", content_checksum);
 }
 

@@ -86,7 +86,7 @@ def geometry_checksum(table):
             values = loaded[name][()].astype("f8") if name in loaded else numpy.zeros(0)
             add(values.tobytes(), values.size)
         add(numbers_of([loaded.attrs[name] for name in ("levels", "largest_level", "contact_modulus")]), 3)
-        if "climb" in loaded.attrs:
+        if loaded.attrs.get("climb", 0.0) != 0.0:
             add(numbers_of([loaded.attrs["climb"]]), 1)
         for value in statistics_of(loaded):
             add(numbers_of([value]), 1)

@@ -312,7 +312,7 @@ def thinned(y, z, most=90):
 
 
 # The least that tablegen loaded makes.
-loaded_options = ["--lateral", "-0.0002:0.0002", "--yaw", "0.001", "--roll", "-0.0005:0.0005", "--levels", "5", "--elements",
+loaded_options = ["--lateral", "-0.0002:0.0002", "--yaw", "0.001", "--roll", "-0.0005:0.0005", "--climb", "0.2", "--levels", "5", "--elements",
                   "8", "--force-error", "0.1", "--light-error", "0.1"]
 
 

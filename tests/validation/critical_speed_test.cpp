@@ -110,8 +110,10 @@ TEST(LinearCriticalSpeed, OfLibraryVehiclesIsThatOfTimeSimulation) {
     ASSERT_GT(above, 0.0) << vehicle;
     const double simulated = v * (0.99 + 0.02 * below / (below - above));
     EXPECT_NEAR(simulated / v, 1.0, 1e-3) << vehicle;
-    EXPECT_FALSE(any_motion_grows(model, 0.99 * v)) << vehicle;
-    EXPECT_TRUE(any_motion_grows(model, 1.01 * v)) << vehicle;
+    EXPECT_FALSE(growing_motion(model, 0.99 * v)) << vehicle;
+    const std::optional<LeastStableMotion> growing = growing_motion(model, 1.01 * v);
+    ASSERT_TRUE(growing) << vehicle;
+    EXPECT_EQ(growing->growth, least_stable_motion(model, 1.01 * v).growth) << vehicle;
   }
 }
 
@@ -122,7 +124,7 @@ TEST(LinearCriticalSpeed, IsNotThatOfUndampedMotions) {
     ASSERT_TRUE(found.critical) << wagon;
     EXPECT_LT(found.critical->frequency, 2.0) << wagon;
     EXPECT_GT(found.critical->speed, 5.0) << wagon;
-    EXPECT_FALSE(any_motion_grows(on_s1002(wagon), 0.99 * found.critical->speed)) << wagon;
+    EXPECT_FALSE(growing_motion(on_s1002(wagon), 0.99 * found.critical->speed)) << wagon;
   }
 }
 

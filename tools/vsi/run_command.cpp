@@ -283,7 +283,7 @@ int run_to_file(const SceneParameters& scene, const RunOptions& options) {
 int run_without_results(const SceneParameters& scene, const RunOptions& options) {
   RunDisplay display(options);
   RunObserver observer = display.observer();
-  observer.contact_points = false;  // the rows have none
+  observer.contact_points = false;  // the headline has no use for them
   const RunSummary summary = run_scene(scene, observer, std::nullopt, options.shared);
   return display.finish(scene, summary, summary.steps > 0);
 }
