@@ -312,7 +312,7 @@ TEST_F(TableFile, LoadedPartsThatDoNotAgreeAreNamed) {
   broken = loaded;
   broken.climb = 11.0;
   EXPECT_NE(outcome_of(broken).find(": loaded, attribute climb: found 11, expected 0 to 2"), std::string::npos);
-  // A table with such a number does not replace the one before.
+  // A table with a number that no reader accepts does not replace the one before.
   broken = loaded;
   broken.height[5] = std::numeric_limits<float>::quiet_NaN();
   table.loaded = broken;

@@ -176,7 +176,7 @@ void expect_the_half_space_solution(const LoadedTable& table) {
 
 TEST(LoadedTable, AgreesWithTheHalfSpaceSolution) { expect_the_half_space_solution(LoadedTable(tread_table())); }
 
-// A wheelset shifted to the left by 2 mm rolls by 1.5 mrad, which is beyond the roll of a table that does not follow.
+// At a shift of -2 mm the nodes of 0.75 rad/m lie about a roll of 1.5 mrad, which is beyond those of the other table.
 TEST(LoadedTable, FollowsAWheelsetThatClimbs) {
   LoadedSweepOptions options = tread_options();
   options.climb = 0.75;

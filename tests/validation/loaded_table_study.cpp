@@ -472,7 +472,7 @@ int main(int count, char** arguments) {
     study.lines(10000);
     study.closed_paths(1000);
     climbing.wheelset();
-    write_text_file(fs::path(arguments[4]) / "loaded_table.csv", study.summary(), "# Forces of");
+    write_text_file(fs::path(arguments[4]) / "loaded_table.csv", study.summary(), "# Forces of loaded tables");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "loaded_table_study: %s\n", error.what());
     return 1;
