@@ -36,6 +36,23 @@ ContactMemory remembered(const WheelRailPair& pair, const WheelsetPose& pose, co
   return memory;
 }
 
+double equivalent_descent(const ContactMemory& contact, std::span<const double> normal, const WheelsetPose& from,
+                          const WheelsetPose& to) noexcept {
+  constexpr int z = 1;
+  const Eigen::Vector4d change(to.y - from.y, to.z - from.z, to.roll - from.roll, to.yaw - from.yaw);
+  double work = 0.0, of_descent = 0.0;  // into the elastic energy; per metre
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
+    const PenetrationGradient& gradient = contact.patch[i].gradient;
+    work += normal[i] * gradient.change(from, to);
+    of_descent += normal[i] * std::cos(gradient.angle);
+  }
+  if (contact.loaded.weight > 0.0) {
+    work += contact.loaded.weight * contact.loaded.force.dot(change);
+    of_descent += contact.loaded.weight * contact.loaded.force[z];
+  }
+  return of_descent > 0.0 ? work / of_descent : 0.0;
+}
+
 double hertz_mean_factor(double d0, double d1) noexcept {
   const double u = std::sqrt(std::max(d0, 0.0));
   const double w = std::sqrt(std::max(d1, 0.0));

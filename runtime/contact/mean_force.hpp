@@ -35,6 +35,12 @@ struct ContactMemory {
 [[nodiscard]] ContactMemory remembered(const WheelRailPair& pair, const WheelsetPose& pose,
                                        const ContactPatches& patches, const WheelForce& force) noexcept;
 
+/// Descent of the wheel against its rail that changes the elastic energy of a contact as a change of pose does, to
+/// first order [m]; 0 without contact.
+/// @param normal forces of the patches [N]
+[[nodiscard]] double equivalent_descent(const ContactMemory& contact, std::span<const double> normal,
+                                        const WheelsetPose& from, const WheelsetPose& to) noexcept;
+
 /// Mean of d^{3/2} over a step in which d goes from d0 to d1 at constant rate, d < 0 counting as lift-off, relative to
 /// the mean of its two ends:
 ///   (2/5)(d1^{5/2} - d0^{5/2})/(d1 - d0) / ((d0^{3/2} + d1^{3/2})/2), 0.8 to 1 while contact lasts.

@@ -65,6 +65,7 @@ class RestOperators {
   VehicleResponse vehicle;
   std::vector<ElementCompliance> elements;  // per system; none where the vehicle has no force elements
   std::shared_ptr<StructureResponse> structure;
+  NewtonWorkspace newton;  ///< with the tangents of the last equilibrium, of the same train and contacts
 
   explicit RestOperators(const VsiModel& model)
       : contact(contact_at_rest(model)),
@@ -277,7 +278,8 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   for (WheelContactModel& wheelset : contact.model) wheelset.normal.material.E *= share.E;
   const WheelsetConstraint constraint(model, vehicle);
   const double balanced = out_of_balance * largest_static_load(model);
-  NewtonWorkspace workspace;
+  const bool detour = share.deviation < 1.0 || share.load < 1.0 || share.E < 1.0;
+  if (detour) rest.newton.forget_tangents();
   const NewtonLimits limits{.tolerance = newton_tolerance, .max_iterations = 100, .rounding = contact_rounding};
   const int vehicles = static_cast<int>(model.vehicle_x.size());
   std::vector<Eigen::VectorXd> load(index(vehicles));  // gravity and the loads that act at this time
@@ -317,7 +319,8 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
       rest_on_rails(problem, state.contact);
       Eigen::VectorXd displacement = problem.free;
       if (elements) elements->respond(state.contact.force, displacement);
-    } else if (!solve_contact_by_continuation(contact, problem, limits, state.contact, workspace).converged) {
+    } else if (!solve_contact_by_continuation(contact, problem, limits, state.contact, rest.newton).converged) {
+      rest.newton.forget_tangents();
       ++report.iterations;
       return report;
     }

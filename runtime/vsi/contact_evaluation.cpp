@@ -38,6 +38,15 @@ void keep_numbers(const WheelForce& force, std::size_t wheel, ContactSolution& s
   counts.outside_creep_table += force.outside_creep_table;
 }
 
+// A wheel's part of the tangent of its wheelset.
+void add_tangent(const Matrix9& of_wheel, int side, Matrix12& tangent) {
+  const int r = 6 + 3 * side;
+  tangent.topLeftCorner<6, 6>() += of_wheel.topLeftCorner<6, 6>();
+  tangent.block<6, 3>(0, r) += of_wheel.topRightCorner<6, 3>();
+  tangent.block<3, 6>(r, 0) += of_wheel.bottomLeftCorner<3, 6>();
+  tangent.block<3, 3>(r, r) += of_wheel.bottomRightCorner<3, 3>();
+}
+
 }  // namespace
 
 ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem, Pairs pairs, Wheelsets wheelsets,
@@ -92,15 +101,20 @@ bool computes_side_by_side(const TrainContact& train, const ContactProblem& prob
 }
 
 ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProblem& problem,
-                                    std::span<const int> wheelsets, ContactSolution& s, std::vector<char>& evaluated) {
+                                    std::span<const int> wheelsets, ContactSolution& s, NewtonWorkspace& ws) {
+  using Computed = NewtonWorkspace::Computed;
   constexpr std::size_t most = WheelLanes::count / 2;  // wheelsets
+  // Between 10 and 20 % a run takes the same time: below, tangents are made too often, above, second evaluations.
+  constexpr double most_tangent_error = 0.15;
   ContactCounts counts;
   std::array<WheelState, 2 * most> wheel;
   std::array<LoadedAnswer, 2 * most> answer;
   std::array<LoadedWheelForce, 2 * most> of_wheel;
+  std::array<Matrix9, 2 * most> tangent;
   for (std::size_t first = 0, count = 0; first < wheelsets.size(); first += count) {
     // neighbours on the same profiles
     const WheelContactModel& model = train[wheelsets[first]];
+    bool differentiates = false;
     for (count = 0; count < most && first + count < wheelsets.size(); ++count) {
       const int w = wheelsets[first + count];
       if (train[w].geometry != model.geometry) break;
@@ -109,14 +123,21 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
         const std::size_t i = 2 * count + index(side);
         WheelContact& contact = s.contact[index(2 * w + side)];
         wheel[i] = {wheel_sides[index(side)], motion, rail_motion(problem, s.displacement, w, side)};
-        answer[i] = {&contact.pose, &contact.loaded, &of_wheel[i]};
+        answer[i] = {&contact.pose, &contact.loaded, &of_wheel[i], &tangent[i]};
       }
+      differentiates |= problem.wheelsets_per_group == 1 && ws.tangent_error[index(w)] > most_tangent_error;
     }
-    const std::uint32_t answered = loaded_wheel_forces(model, {wheel.data(), 2 * count}, answer);
+    const std::span<const WheelState> wheels(wheel.data(), 2 * count);
+    const std::uint32_t answered =
+        differentiates
+            ? loaded_wheel_responses(model, wheels, {problem.velocity_rate, problem.rail_velocity_rate}, answer)
+            : loaded_wheel_forces(model, wheels, answer);
     for (std::size_t i = 0; i < count; ++i) {
       const int w = wheelsets[first + i];
       const bool both = (answered >> (2 * i) & 3U) == 3U;
-      evaluated[index(w)] = both;
+      ws.computed[index(w)] = !both            ? Computed::nothing
+                              : differentiates ? Computed::forces_and_tangent
+                                               : Computed::forces;
       if (!both) continue;
       auto force = s.force.segment<wheelset_unknowns>(wheelset_unknowns * w);
       force.setZero();
@@ -133,6 +154,10 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
         memory.loaded = of.memory;
       }
       s.end_force.segment<wheelset_unknowns>(wheelset_unknowns * w) = force;
+      if (differentiates) {
+        ws.tangent[index(w)].setZero();
+        for (int side = 0; side < 2; ++side) add_tangent(tangent[2 * i + index(side)], side, ws.tangent[index(w)]);
+      }
       counts.queries += 2;
       counts.table_queries += 2;
     }
@@ -154,11 +179,7 @@ void differentiate(const TrainContact& train, const ContactProblem& problem, Whe
       const Matrix9 t = (start ? problem.mean_weight : 1.0) *
                         wheel_force_tangent(model, wheel_sides[index(side)], motion, rail, s.contact[number],
                                             {problem.velocity_rate, problem.rail_velocity_rate, start});
-      const int r = 6 + 3 * side;
-      tangent.topLeftCorner<6, 6>() += t.topLeftCorner<6, 6>();
-      tangent.block<6, 3>(0, r) += t.topRightCorner<6, 3>();
-      tangent.block<3, 6>(r, 0) += t.bottomLeftCorner<3, 6>();
-      tangent.block<3, 3>(r, r) += t.bottomRightCorner<3, 3>();
+      add_tangent(t, side, tangent);
     }
   }
 }

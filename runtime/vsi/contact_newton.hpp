@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
 #include "railtab/runtime/contact/contact_response.hpp"
+#include "railtab/runtime/vsi/contact_estimate.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
 #include "railtab/runtime/vsi/train_contact.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
@@ -101,23 +103,6 @@ struct NewtonLimits {
   double rounding = 0.0;
 };
 
-/// What Newton's method adds to the estimated displacements of a step. It is nearly the same as in the step before,
-/// since the track passes smoothly under the wheels.
-class CorrectionTrend {
- public:
-  void forget() noexcept { known_ = 0; }
-  /// Adds the correction of the step before to the estimate, for each wheelset that this would have helped then.
-  /// @param velocity_rate of the step; where that has changed, the step has another length and other corrections
-  void add_to(Eigen::VectorXd& displacement, double velocity_rate);
-  /// @param displacement the solution of the step that add_to() was called for
-  void learn(const Eigen::VectorXd& displacement);
-
- private:
-  int known_ = 0;  ///< corrections of steps before, up to two
-  double velocity_rate_ = 0.0;
-  Eigen::VectorXd estimate_, last_, before_last_;
-};
-
 /// Where the iteration of one group of wheelsets is.
 struct GroupNewton {
   bool moved = true;                                                  ///< since its forces were computed
@@ -145,7 +130,7 @@ struct NewtonWorkspace {
   void forget_tangents() {
     inverse.clear();
     tangent_error.clear();
-    trend.forget();
+    estimate.forget();
   }
 
   using Matrix12 = Eigen::Matrix<double, wheelset_unknowns, wheelset_unknowns>;
@@ -157,12 +142,14 @@ struct NewtonWorkspace {
   std::vector<GroupNewton> group;
   std::vector<int> to_invert;    ///< groups whose inverse is to be made
   std::vector<int> to_evaluate;  ///< wheelsets whose forces are to be computed side by side
-  std::vector<char> evaluated;   ///< per wheelset, whether they were
+  /// Per wheelset, what the last side-by-side computation found.
+  enum class Computed : std::uint8_t { nothing, forces, forces_and_tangent };
+  std::vector<Computed> computed;
   Eigen::VectorXd residual, correction;
   Eigen::VectorXd force_change;        ///< by the correction before it is limited, to first order
   Eigen::VectorXd start, start_force;  ///< displacement and force before the last correction
   std::vector<double> tangent_error;   ///< per group, estimate: of a change of forces by the tangent, relative
-  CorrectionTrend trend;
+  ForceEstimate estimate;
   Eigen::VectorXd continuation_start;  ///< displacement that solve_contact_by_continuation() began with
   std::vector<ContactPatches> found;   ///< per wheel, by the last search, and where: of the published method only
   std::vector<WheelsetPose> found_at;
@@ -183,16 +170,17 @@ void evaluate_contact(const TrainContact& train, const ContactProblem& problem, 
 /// Newton on the contact unknowns, from solution.displacement. The Jacobian is inverted group by group of wheelsets;
 /// their coupling through vehicles and rails enters the residual. Each group keeps its tangent while it halves the
 /// residual per iteration, from one step to the next too: a tangent costs five evaluations of the forces. Where a group
-/// is one wheelset, the tangent learns from every correction what that has changed the forces by [Broyden1965]. Without
-/// inverses in the workspace it is made first of all. A group that has converged rests while others iterate, unless its
-/// neighbours disturb it. A correction that changes forces little is made by the tangent alone, without a further
-/// evaluation, if its error is less than half the force tolerance by the errors that the tangent has shown in the last
-/// evaluations, both wheels carry ten times that change, and no creepage changes by more than 10⁻⁴. What else the
-/// solution holds of the contacts, such as the patches' normal forces, then belongs to a displacement at which forces
-/// differ by at most 20 tolerances. The published method's pairs jump as a wheel moves: they are searched in the first
-/// evaluations and then held, each moving with its bodies' particles, so that Newton ends on forces that are smooth.
-/// Converged: the residual is below the tolerance or the next correction below one of the limits; the forces are those
-/// at the displacement, or by the tangent.
+/// is one wheelset, the tangent learns from every correction what that has changed the forces by [Broyden1965]; where
+/// wheels are computed side by side, for which a tangent costs less than a second evaluation, it is made anew when its
+/// estimated error has grown to 15 %. Without inverses in the workspace it is made first of all. A group that has
+/// converged rests while others iterate, unless its neighbours disturb it. A correction that changes forces little is
+/// made by the tangent alone, without a further evaluation, if its error is less than half the force tolerance by the
+/// errors that the tangent has shown in the last evaluations, both wheels carry ten times that change, and no creepage
+/// changes by more than 10⁻⁴. What else the solution holds of the contacts, such as the patches' normal forces, then
+/// belongs to a displacement at which forces differ by at most 20 tolerances. The published method's pairs jump as a
+/// wheel moves: they are searched in the first evaluations and then held, each moving with its bodies' particles, so
+/// that Newton ends on forces that are smooth. Converged: the residual is below the tolerance or the next correction
+/// below one of the limits; the forces are those at the displacement, or by the tangent.
 [[nodiscard]] NewtonReport solve_contact(const TrainContact& train, const ContactProblem& problem,
                                          const NewtonLimits& limits, ContactSolution& solution,
                                          NewtonWorkspace& workspace, InitialForces forces = InitialForces::unknown);

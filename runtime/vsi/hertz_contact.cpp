@@ -101,11 +101,12 @@ class HertzContacts : public ContactLaw {
     const bool energy = step.hht.contact_force == ContactForceRule::energy;
     problem_.start = energy ? &state.contact : nullptr;
     problem_.mean_weight = energy ? 1.0 / (step.hht.gamma() * step.hht.load_weight()) : 1.0;
-    // Velocities that stay what they are leave creepages and, nearly, contact forces what they are. Forces that stay
-    // would be a worse start: at walking pace they leave a motion in which a wheel slides.
+    // Velocities that stay what they are leave creepages what they are. Forces that stay would be a worse start: at
+    // walking pace they leave a motion in which a wheel slides.
     ws.solution.force = (energy ? 0.5 * problem_.mean_weight : 1.0) * state.contact.end_force;
     ws.solution.displacement =
         problem_.predicted + (begin_velocity_ - problem_.predicted_velocity) / step.hht.velocity_rate();
+    newton_.estimate.add_to(contact_, problem_, state.contact, newton_, ws.solution);
   }
 
   ContactSolve solve(const StepContext& step, int pass, StepWorkspace& ws, StepReport& report) override {
@@ -159,7 +160,7 @@ class HertzContacts : public ContactLaw {
       update(hht, p, p.increment, motion);
     }
     if (step.model.structure) close_elements(step, ws.solution, state.deflection);
-    newton_.trend.learn(ws.solution.displacement);
+    newton_.estimate.learn(contact_, problem_, newton_, ws.solution);
     ws.solution.step_load = state.contact.step_load;
     close_load(hht, ws.solution.force, state.contact.end_force, ws.solution.step_load);
     std::swap(state.contact, ws.solution);

@@ -10,8 +10,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "railtab/runtime/profile/standard_profiles.hpp"
-#include "railtab/runtime/vsi/contact_newton.hpp"
+#include "wheelset_chain.hpp"
 
 namespace railtab {
 namespace {
@@ -34,45 +33,43 @@ TEST(HertzMeanFactor, MakesTheWorkThatOfTheEnergy) {
   }
 }
 
-// One wheelset over rigid rails for a step of 1 ms with alpha = -0.05.
-struct Chain {
-  std::shared_ptr<const ContactGeometry> geometry = std::make_shared<const ContactGeometry>(
-      ContactSearch(WheelRailPair(ProfileCurve(standard_profile(ProfileKind::wheel, "S1002", 0.0)),
-                                  ProfileCurve(standard_profile(ProfileKind::rail, "60E1", 1.0 / 40.0)), {})));
-  WheelContactModel model;
-  ContactProblem problem;
-  ContactSolution start, end;
-
-  Chain() {
-    model.geometry = geometry.get();
-    model.speed = 30.0;
-    problem.wheelsets_per_vehicle = problem.wheelsets_per_group = 1;
-    problem.predicted = problem.predicted_velocity = Eigen::VectorXd::Zero(wheelset_unknowns);
-    problem.deviation.resize(1);
-    end.displacement = end.force = end.end_force = end.step_load = Eigen::VectorXd::Zero(wheelset_unknowns);
-    end.rail_x.resize(2);
-    end.normal.resize(2);
-    end.creep_power.resize(2);
-    end.pressure.resize(2);
-    end.contact.resize(2);
-    end.memory.resize(2);
-    start = end;
-  }
-
-  // Forces of a step from motion `from` to motion `to` of the wheelset, df/dq in `tangent`.
-  Eigen::VectorXd force_after(const Eigen::VectorXd& q) {
-    end.displacement = q;
-    evaluate_contact(model, problem, end);
-    return end.force;
-  }
-};
-
 struct Step {
   const char* name;
   Vector6 from, to;
 };
 
-Vector6 pose(double y, double z, double yaw) { return Vector6{0.0, y, z, 0.0, 0.0, yaw}; }
+// Penetrations follow from a search at every pose.
+TEST(EquivalentDescent, ChangesTheEnergyOfPatchesAsAMotionDoes) {
+  Chain chain;
+  for (const double y : {0.0, 4.6e-3, 5.5e-3}) {
+    const WheelsetPose from{y, 0.32e-3, 1e-3, 1e-3};
+    const WheelContact contact = wheel_contact(*chain.geometry, from);
+    const LoadedWheelForce force = wheel_force(chain.model, WheelSide::right,
+                                               {Vector6{0, from.y, from.z, from.roll, 0, from.yaw}, {}}, {}, contact);
+    const ContactMemory memory = contact_memory(chain.geometry->pair(), contact, force);
+    const auto energy = [&](const WheelsetPose& pose) {
+      const ContactPatches patches = chain.geometry->patches(pose);
+      EXPECT_EQ(patches.count, contact.patches.count);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(patches.count); ++i) {
+        sum += force.normal[i] * patches.patch[i].penetration;
+      }
+      return sum;
+    };
+    const double h = 1e-8, per_metre = (energy({from.y, from.z + h, from.roll, from.yaw}) -
+                                        energy({from.y, from.z - h, from.roll, from.yaw})) /
+                                       (2.0 * h);
+    EXPECT_GT(per_metre, 1e3);
+    const WheelsetPose motions[] = {{0, h, 0, 0}, {h, 0, 0, 0}, {0, 0, h, 0}, {0, 0, 0, h}, {h, -h, 2 * h, h}};
+    for (const WheelsetPose& m : motions) {
+      const WheelsetPose to{from.y + m.y, from.z + m.z, from.roll + m.roll, from.yaw + m.yaw};
+      const WheelsetPose back{from.y - m.y, from.z - m.z, from.roll - m.roll, from.yaw - m.yaw};
+      const double descent = equivalent_descent(memory, force.normal, from, to);
+      EXPECT_NEAR(per_metre * descent, 0.5 * (energy(to) - energy(back)), 2e-3 * per_metre * h) << y;
+    }
+  }
+  EXPECT_EQ(equivalent_descent({}, {}, {}, {1e-3, 1e-3, 1e-3, 1e-3}), 0.0);
+}
 
 class ChainTangent : public ::testing::TestWithParam<ContactForceRule> {};
 
