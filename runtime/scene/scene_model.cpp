@@ -107,7 +107,7 @@ Irregularity random_track(const SceneParameters& scene, const VsiModel& model) {
 }
 
 // The structure as the steps will have it.
-void reduce(const ReductionParameters& reduction, VsiModel& model) {
+void reduce(const ReductionParameters& reduction, VsiModel& model, SharedSetUp* shared) {
   if (!model.structure) return;
   if (model.ground_motion && reduction.kind != Reduction::none) {
     StructureModel moved = *model.structure;
@@ -120,7 +120,7 @@ void reduce(const ReductionParameters& reduction, VsiModel& model) {
         throw input_error("scene: structure.reduction", "\"window\" of an imported structure",
                           "\"none\": the positions of its degrees of freedom along the track are not known");
       }
-      model.window = make_window(*model.structure, reduction);
+      model.window = shared ? shared->window(model.structure, reduction) : make_window(*model.structure, reduction);
       break;
     case Reduction::none:
       break;
@@ -176,7 +176,7 @@ VsiModel build_model(const SceneParameters& scene, SharedSetUp* shared) {
   add_friction(scene, model);
   if (scene.spectrum) model.irregularity = random_track(scene, model);
   check_on_track(scene, model);
-  reduce(scene.reduction, model);
+  reduce(scene.reduction, model, shared);
   return model;
 }
 

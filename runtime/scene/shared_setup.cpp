@@ -54,4 +54,14 @@ SharedStructure SharedSetUp::structure(const SceneParameters& scene) {
   return structure_;
 }
 
+WindowModel SharedSetUp::window(const SharedStructure& structure, const ReductionParameters& reduction) {
+  if (structure_of_window_ != structure) {
+    window_ = make_window(*structure, reduction);
+    structure_of_window_ = structure;
+  }
+  window_.ahead = reduction.ahead;
+  window_.behind = reduction.behind;
+  return window_;
+}
+
 }  // namespace railtab

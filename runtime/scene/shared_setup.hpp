@@ -7,6 +7,7 @@
 
 #include "railtab/runtime/scene/scene_parameters.hpp"
 #include "railtab/runtime/scene/scene_structure.hpp"
+#include "railtab/runtime/vsi/moving_window.hpp"
 #include "railtab/runtime/vsi/structure_store.hpp"
 #include "railtab/runtime/vsi/vsi_model.hpp"
 
@@ -23,13 +24,16 @@ class SharedSetUp {
   [[nodiscard]] CreepLaw creep_law(const ContactParameters& contact);
   /// scene_structure(), of the last call where that was for the same structure.
   [[nodiscard]] SharedStructure structure(const SceneParameters& scene);
+  /// make_window(), of the last call where that was for the same structure.
+  [[nodiscard]] WindowModel window(const SharedStructure& structure, const ReductionParameters& reduction);
   [[nodiscard]] const std::shared_ptr<StructureStore>& structures() const noexcept { return structures_; }
 
  private:
   std::map<std::string, std::shared_ptr<const ContactGeometry>> geometry_;  // by all that it depends on
   std::map<std::string, CreepLaw> creep_law_;
   std::optional<StructureKey> structure_key_;
-  SharedStructure structure_;
+  SharedStructure structure_, structure_of_window_;
+  WindowModel window_;
   std::shared_ptr<StructureStore> structures_ = std::make_shared<StructureStore>();
 };
 

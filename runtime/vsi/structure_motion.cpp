@@ -33,6 +33,7 @@ const LinearMotion& StructureMotion::whole() const {
 LinearMotion& StructureMotion::whole() {
   update_whole();
   ordered_.layout.reset();
+  predicted_by_.reset();
   return own_order_;
 }
 
@@ -49,6 +50,7 @@ const LinearMotion& StructureMotion::at(std::span<const int> unknowns) const {
 }
 
 void StructureMotion::set(int unknown, const Eigen::RowVector3d& motion) {
+  predicted_by_.reset();
   const auto own = vectors(own_order_);
   const auto ordered = vectors(ordered_);
   for (std::size_t k = 0; k < own.size(); ++k) {
@@ -62,6 +64,7 @@ const OrderedMotion& StructureMotion::in_order(const std::shared_ptr<const Secti
   if (ordered_.layout == layout) return ordered_;
   update_whole();
   ordered_.layout = layout;
+  predicted_by_.reset();
   const auto from = vectors(own_order_);
   const auto to = vectors(ordered_);
   for (std::size_t k = 0; k < to.size(); ++k) {
@@ -71,21 +74,42 @@ const OrderedMotion& StructureMotion::in_order(const std::shared_ptr<const Secti
   return ordered_;
 }
 
+SectionedProduct::Motion& StructureMotion::predicted(const WeightedPredictor& p,
+                                                     const std::shared_ptr<const SectionLayout>& layout) const {
+  const OrderedMotion& m = in_order(layout);
+  if (predicted_by_ != p) {
+    predicted_.u = m.displacement + p.u_v * m.velocity + p.u_w * m.acceleration;
+    predicted_.v = m.velocity + p.v_w * m.acceleration;
+    predicted_by_ = p;
+  }
+  return predicted_;
+}
+
 std::array<const Eigen::VectorXd*, 3> StructureMotion::numbers() const {
   return ordered_.layout ? vectors(std::as_const(ordered_)) : vectors(std::as_const(own_order_));
 }
 
 std::array<Eigen::VectorXd*, 3> StructureMotion::numbers() {
   own_order_is_current_ = !ordered_.layout;
+  predicted_by_.reset();
   return ordered_.layout ? vectors(ordered_) : vectors(own_order_);
 }
 
-void StructureMotion::end_step(const HhtScheme& scheme, const Eigen::VectorXd& increment) {
+void StructureMotion::end_step(const HhtScheme& scheme, const WeightedPredictor& next,
+                               const Eigen::VectorXd& increment) {
   assert(ordered_.layout && increment.size() >= ordered_.layout->size());
   const StepEnd end = step_end(scheme, ordered_);
   const Eigen::Index size = ordered_.displacement.size();
+  predicted_.u.resize(size);
+  predicted_.v.resize(size);
+  double *const u = predicted_.u.data(), *const v = predicted_.v.data();
 #pragma GCC ivdep
-  for (Eigen::Index i = 0; i < size; ++i) end.move(static_cast<std::size_t>(i), increment[i]);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    end.move(static_cast<std::size_t>(i), increment[i]);
+    u[i] = end.u[i] + next.u_v * end.v[i] + next.u_w * end.w[i];
+    v[i] = end.v[i] + next.v_w * end.w[i];
+  }
+  predicted_by_ = next;
   own_order_is_current_ = false;
 #ifndef NDEBUG
   for (Eigen::VectorXd* vector : vectors(own_order_)) {

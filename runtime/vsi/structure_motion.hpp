@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "railtab/runtime/algebra/section_layout.hpp"
+#include "railtab/runtime/algebra/sectioned_product.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
 
 namespace railtab {
@@ -41,13 +43,18 @@ class StructureMotion {
 
   /// The motion of the layout's unknowns in its order.
   [[nodiscard]] const OrderedMotion& in_order(const std::shared_ptr<const SectionLayout>& layout) const;
+  /// What a predictor makes of the motion, in the layout's order: left by end_step() where that was given the same one.
+  /// Its borders are anyone's to write.
+  [[nodiscard]] SectionedProduct::Motion& predicted(const WeightedPredictor& predictor,
+                                                    const std::shared_ptr<const SectionLayout>& layout) const;
   /// Displacement, velocity and acceleration as the next step takes them up: in the order of in_order(), if it was
   /// called since the motion was last changed as a whole, or in their own.
   [[nodiscard]] std::array<const Eigen::VectorXd*, 3> numbers() const;
   /// The same to be changed.
   [[nodiscard]] std::array<Eigen::VectorXd*, 3> numbers();
   /// Ends a step with an increment in the layout's order. @pre in_order() of that layout, at the step's beginning
-  void end_step(const HhtScheme& scheme, const Eigen::VectorXd& increment);
+  /// @param next the predictor of the step that will probably follow
+  void end_step(const HhtScheme& scheme, const WeightedPredictor& next, const Eigen::VectorXd& increment);
 
  private:
   void update_whole() const;
@@ -56,6 +63,8 @@ class StructureMotion {
   mutable LinearMotion own_order_;
   mutable OrderedMotion ordered_;
   mutable bool own_order_is_current_ = true;
+  mutable SectionedProduct::Motion predicted_;
+  mutable std::optional<WeightedPredictor> predicted_by_;  // none: predicted_ is not of this motion
 };
 
 }  // namespace railtab

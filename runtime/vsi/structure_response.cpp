@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +18,8 @@
 namespace railtab {
 
 namespace {
+
+constexpr double most_kept = 64.0 * 1024.0 * 1024.0;  // bytes, of compliances and of factors: keep_for_later_runs()
 
 using Sparse = Eigen::SparseMatrix<double>;
 
@@ -302,9 +305,30 @@ void StructureResponse::set_entries(const Sparse& stiffness, const Sparse& dampi
 
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
+  leave_factor();
   active_ = dofs;
+  const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.active == dofs; });
+  if (known == kept_.end()) return make_factor();
+  factor_ = std::move(known->factor);
+  product_ = std::move(known->product);
+  kept_.erase(known);
+}
+
+void StructureResponse::leave_factor() {
+  if (factor_ && keeps_) {
+    std::size_t bytes = factor_->stored_bytes() + (product_ ? product_->bytes() : 0);
+    const std::size_t of_others = std::accumulate(kept_.begin(), kept_.end(), std::size_t{0},
+                                                  [](std::size_t sum, const Kept& kept) { return sum + kept.bytes; });
+    if (static_cast<double>(bytes + of_others) <= most_kept) {
+      kept_.push_back({active_, std::move(factor_), std::move(product_), bytes});
+    }
+  }
   factor_.reset();  // not two at a time
   product_.reset();
+}
+
+void StructureResponse::make_factor() {
+  const DofRange& dofs = active_;
   if (divisible_) {
     bool inaccurate = false;
     if (auto layout = divide(divisible_->effective, divisible_->places, divisible_->pairs, dofs)) {
@@ -435,33 +459,27 @@ double StructureResponse::table_bytes(const StructureModel& structure, double wi
 void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                                    StructureSolution& solution) const {
   assert(load.at || load.weight == 1.0);
-  // (1+α)ã − αa(t) and (1+α)ṽ − αv(t)
-  const NewmarkPredictor predictor(scheme_);
-  const double weight = scheme_.load_weight(), u_v = weight * predictor.time_step,
-               u_w = weight * predictor.displacement_by_acceleration, v_w = weight * predictor.velocity_by_acceleration;
-  auto& [u, v] = solution.motion;
   if (product_) {
-    const OrderedMotion& m = motion.in_order(product_->layout());
-    u = m.displacement + u_v * m.velocity + u_w * m.acceleration;
-    v = m.velocity + v_w * m.acceleration;
+    SectionedProduct::Motion& predicted = motion.predicted(predictor_, product_->layout());
     solution.substitution.begin_with(*factor_, few, [&](Eigen::VectorXd& known) {
       if (load.at) {
         factor_->into(*load.at, load.weight, load.vector, known);
       } else {
         factor_->into(load.vector, known);
       }
-      product_->subtract(solution.motion, known);
+      product_->subtract(predicted, known);
     });
     return;
   }
+  auto& [u, v] = solution.motion;
   solution.load.resize(dofs_);
   active_.of(solution.load) = load.weight * active_.of(load.vector);
   u.resize(dofs_);
   v.resize(dofs_);
   const LinearMotion& begin = motion.whole();
   const auto velocity = active_.of(begin.velocity), acceleration = active_.of(begin.acceleration);
-  active_.of(u) = active_.of(begin.displacement) + u_v * velocity + u_w * acceleration;
-  active_.of(v) = velocity + v_w * acceleration;
+  active_.of(u) = active_.of(begin.displacement) + predictor_.u_v * velocity + predictor_.u_w * acceleration;
+  active_.of(v) = velocity + predictor_.v_w * acceleration;
   const Eigen::Index first = active_.begin, last = active_.end();
   double* const f = solution.load.data();
   for (Eigen::Index j = first; j < last; ++j) {
@@ -482,7 +500,7 @@ void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoa
 void StructureResponse::finish_step(StructureSolution& solution, StructureMotion& motion) const {
   assert(!at_rest_);
   if (product_) {
-    motion.end_step(scheme_, solution.substitution.finish(*factor_));
+    motion.end_step(scheme_, predictor_, solution.substitution.finish(*factor_));
     return;
   }
   solution.increment.resize(dofs_);
@@ -543,10 +561,9 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
 }
 
 void StructureResponse::tabulate_compliance(const StructureModel& structure, double window, double from, double to) {
-  constexpr double most_kept = 64.0 * 1024.0 * 1024.0;  // bytes
   if (!few_) few_ = std::make_unique<FewEntries>(dofs_);
   const RailLine& line = structure.rail[0];
-  const bool keeps = keeps_compliances_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
+  const bool keeps = keeps_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
   const auto visit = [&](auto&& visitor) {
     for (std::size_t side = 0; side < tabulated_rails(); ++side) {
       const RailLine& rail = structure.rail[side];

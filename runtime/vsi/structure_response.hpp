@@ -93,7 +93,8 @@ class StructureResponse {
   /// That of the constructor. @pre not at rest
   [[nodiscard]] const HhtScheme& scheme() const noexcept { return scheme_; }
 
-  /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor.
+  /// Let only these unknowns take part: the others are held at rest. At first all take part. Makes a new factor, where
+  /// none of them is kept.
   void activate(const DofRange& dofs);
   [[nodiscard]] const DofRange& active() const noexcept { return active_; }
 
@@ -133,9 +134,9 @@ class StructureResponse {
   /// within `window` [m] on either side (at least one element). What it has already is kept, what lies outside is
   /// dropped: a moving train takes its table along, at a cost that does not depend on the track's length.
   void tabulate_compliance(const StructureModel& structure, double window, double from, double to);
-  /// From now on nothing is dropped from that table, for trains that will run there again, unless it takes more than
-  /// 64 MiB.
-  void keep_compliances() noexcept { keeps_compliances_ = true; }
+  /// For trains that will run there again, from now on nothing is dropped from that table, and factors of other active
+  /// unknowns wait for activate(), as far as either takes no more than 64 MiB.
+  void keep_for_later_runs() noexcept { keeps_ = true; }
   /// Displacement of rail head `i` from unit loads on rail head `j` (3×3), from the tabulated compliance; zero where
   /// the two are farther apart than the window: what that leaves out is put right by the step's own residual.
   /// @pre the table covers `j`
@@ -173,14 +174,26 @@ class StructureResponse {
   [[nodiscard]] std::unique_ptr<SubstitutionFactor> accurate_sections(
       const std::shared_ptr<const SectionLayout>& layout) const;
   void set_entries(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping);
+  /// Puts away the factor of the active unknowns, or drops it.
+  void leave_factor();
+  void make_factor();
 
   HhtScheme scheme_{};
+  WeightedPredictor predictor_{scheme_};
   Eigen::SparseMatrix<double> effective_;  ///< K̄
   /// Null where the unknowns have no lines, or a factor in sections was not accurate.
   std::unique_ptr<Divisible> divisible_;
   std::unique_ptr<SubstitutionFactor> factor_;
   std::unique_ptr<SectionedProduct> product_;  ///< null: not in sections
   DofRange active_;
+  /// What belongs to other active unknowns.
+  struct Kept {
+    DofRange active;
+    std::unique_ptr<SubstitutionFactor> factor;
+    std::unique_ptr<SectionedProduct> product;
+    std::size_t bytes;
+  };
+  std::vector<Kept> kept_;
   /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
   struct Entry {
     double stiffness, damping;
@@ -205,7 +218,7 @@ class StructureResponse {
   [[nodiscard]] bool by_mirror(const RailContact& loaded) const noexcept {
     return rails_mirror_ && loaded.side == RailSide::right;
   }
-  bool keeps_compliances_ = false;
+  bool keeps_ = false;
 };
 
 }  // namespace railtab

@@ -57,7 +57,7 @@ std::shared_ptr<StructureResponse> StructureStore::of_steps(const SharedStructur
     if (of_steps_.size() == most_kept) of_steps_.erase(of_steps_.begin());
     of_steps_.push_back(
         {scheme.alpha, scheme.time_step, std::make_shared<StructureResponse>(*structure, scheme, active)});
-    of_steps_.back().response->keep_compliances();
+    of_steps_.back().response->keep_for_later_runs();
   } else {
     std::rotate(found, found + 1, of_steps_.end());
     if (active.count > 0) of_steps_.back().response->activate(active);

@@ -304,6 +304,71 @@ TEST(StructureResponse, AStepInSectionsIsThatOfTheWhole) {
   }
 }
 
+TEST(StructureResponse, KeepsFactorsForLaterRunsWhereAsked) {
+  TrackParameters track;
+  track.length_before = track.length_after = 60.0;
+  const StructureModel structure = build_track_bridge(track, {BridgeParameters{}});
+  const int n = structure.dofs();
+  const DofRange all{0, n}, window{n / 8, n - n / 4};
+  const LinearMotion motion = random_motion(n);
+  const Eigen::VectorXd load = 1e5 * Eigen::VectorXd::Random(n);
+  for (const bool keeps : {false, true}) {
+    StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
+    if (keeps) response.keep_for_later_runs();
+    const auto of_all = response.factor().id();
+    const Eigen::VectorXd by_all = response.increment(motion, load);
+    response.activate(window);
+    const auto of_window = response.factor().id();
+    const Eigen::VectorXd by_window = response.increment(motion, load);
+    response.activate(all);
+    EXPECT_EQ(response.factor().id() == of_all, keeps);
+    EXPECT_EQ(response.increment(motion, load), by_all);
+    response.activate(window);
+    EXPECT_EQ(response.factor().id() == of_window, keeps);
+    EXPECT_EQ(response.increment(motion, load), by_window);
+    EXPECT_NE(by_window, by_all);
+  }
+}
+
+// A step leaves what the next one begins with; whatever changes the motion in between counts.
+TEST(StructureResponse, AStepBeginsFromTheMotionAsItIs) {
+  TrackParameters track;
+  track.length_before = track.length_after = 60.0;
+  const StructureModel structure = build_track_bridge(track, {BridgeParameters{}});
+  const int n = structure.dofs();
+  const StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3}),
+      shorter(structure, HhtScheme{.alpha = -0.1, .time_step = 5e-4});
+  ASSERT_TRUE(response.in_sections());
+  const Eigen::VectorXd load = 1e5 * Eigen::VectorXd::Random(n);
+  StructureMotion motion(random_motion(n));
+  StructureSolution solution;
+  const auto step = [&](const StructureResponse& by, StructureMotion& of) {
+    response.bring_in_order(of);
+    Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
+    by.begin_step(of, {load}, {}, solution);
+    solution.substitution.respond(by.factor(), none);
+    by.finish_step(solution, of);
+  };
+  const auto goes_on_as_anew = [&](const StructureResponse& by) {
+    StructureMotion on = motion, anew(std::as_const(motion).whole());
+    step(by, on);
+    step(by, anew);
+    const Eigen::VectorXd expected = anew.whole().displacement;
+    return (on.whole().displacement - expected).cwiseAbs().maxCoeff() < 1e-12 * expected.cwiseAbs().maxCoeff();
+  };
+  step(response, motion);
+  EXPECT_TRUE(goes_on_as_anew(response));
+  EXPECT_TRUE(goes_on_as_anew(shorter));
+  motion.set(n / 2, {1.0, 20.0, 3e3});
+  EXPECT_TRUE(goes_on_as_anew(response));
+  step(response, motion);
+  motion.whole().velocity[n / 3] += 10.0;
+  EXPECT_TRUE(goes_on_as_anew(response));
+  step(response, motion);
+  for (Eigen::VectorXd* numbers : motion.numbers()) *numbers *= 2.0;
+  EXPECT_TRUE(goes_on_as_anew(response));
+}
+
 // Single precision suffices for elements of 1 m and 0.32 m in steps of 0.5 ms; shorter ones, or steps of 5 ms, take a
 // double-precision factor.
 TEST(StructureResponse, ShortElementsInLongStepsAreNotRoundedToFloats) {
