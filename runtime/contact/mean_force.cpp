@@ -43,8 +43,9 @@ double equivalent_descent(const ContactMemory& contact, std::span<const double> 
   double work = 0.0, of_descent = 0.0;  // into the elastic energy; per metre
   for (std::size_t i = 0; i < static_cast<std::size_t>(contact.count); ++i) {
     const PenetrationGradient& gradient = contact.patch[i].gradient;
-    work += normal[i] * gradient.change(from, to);
-    of_descent += normal[i] * std::cos(gradient.angle);
+    const double share = (1.0 - contact.loaded.weight) * normal[i];
+    work += share * gradient.change(from, to);
+    of_descent += share * std::cos(gradient.angle);
   }
   if (contact.loaded.weight > 0.0) {
     work += contact.loaded.weight * contact.loaded.force.dot(change);

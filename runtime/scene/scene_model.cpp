@@ -120,7 +120,8 @@ void reduce(const ReductionParameters& reduction, VsiModel& model, SharedSetUp* 
         throw input_error("scene: structure.reduction", "\"window\" of an imported structure",
                           "\"none\": the positions of its degrees of freedom along the track are not known");
       }
-      model.window = shared ? shared->window(model.structure, reduction) : make_window(*model.structure, reduction);
+      model.window = shared && !model.ground_motion ? shared->window(model.structure, reduction)
+                                                    : make_window(*model.structure, reduction);
       break;
     case Reduction::none:
       break;

@@ -278,8 +278,6 @@ EquilibriumReport equilibrium_at(const RestShares& share, const VsiModel& model,
   for (WheelContactModel& wheelset : contact.model) wheelset.normal.material.E *= share.E;
   const WheelsetConstraint constraint(model, vehicle);
   const double balanced = out_of_balance * largest_static_load(model);
-  const bool detour = share.deviation < 1.0 || share.load < 1.0 || share.E < 1.0;
-  if (detour) rest.newton.forget_tangents();
   const NewtonLimits limits{.tolerance = newton_tolerance, .max_iterations = 100, .rounding = contact_rounding};
   const int vehicles = static_cast<int>(model.vehicle_x.size());
   std::vector<Eigen::VectorXd> load(index(vehicles));  // gravity and the loads that act at this time
@@ -379,6 +377,7 @@ struct Growth {
 EquilibriumReport by_growing(const Growth& growth, const VsiModel& model, RestOperators& rest,
                              const Eigen::VectorXd& structure_load, VsiState& state, double& share) {
   VsiState reached = state;
+  rest.newton.forget_tangents();
   EquilibriumReport report = equilibrium_at(growth.at(0.0), model, rest, structure_load, reached);
   int iterations = 0;
   share = 0.0;
@@ -387,6 +386,7 @@ EquilibriumReport by_growing(const Growth& growth, const VsiModel& model, RestOp
     state = reached;
     iterations += report.iterations;
     const double next = std::min(1.0, share + step);
+    rest.newton.forget_tangents();  // of another share
     report = equilibrium_at(growth.at(next), model, rest, structure_load, state);
     if (report.converged) {
       reached = state;

@@ -39,10 +39,10 @@ void ForceEstimate::add_motion(const TrainContact& train, const ContactProblem& 
 
 // Of each wheelset nothing, the last or the straight line through the last two, whichever would have left least in the
 // step before.
-void ForceEstimate::add_lack(Eigen::VectorXd& force) const {
+void ForceEstimate::add_error(Eigen::VectorXd& force) const {
   if (known_ < steps) return;
   for (Eigen::Index k = 0; k < force.size(); k += wheelset_unknowns) {
-    const auto part = [&](int step) { return lack_[index(step)].segment<wheelset_unknowns>(k); };
+    const auto part = [&](int step) { return error_[index(step)].segment<wheelset_unknowns>(k); };
     const double of_nothing = part(0).squaredNorm(), of_last = (part(0) - part(1)).squaredNorm(),
                  of_line = (part(0) - 2.0 * part(1) + part(2)).squaredNorm();
     if (of_line < std::min(of_last, of_nothing)) {
@@ -54,13 +54,15 @@ void ForceEstimate::add_lack(Eigen::VectorXd& force) const {
 }
 
 void ForceEstimate::add_to(const TrainContact& train, const ContactProblem& problem, const ContactSolution& start,
-                           const NewtonWorkspace& workspace, ContactSolution& estimate) {
+                           const NewtonWorkspace& workspace, bool goes_on, ContactSolution& estimate) {
   if (!problem.start) add_motion(train, problem, start, workspace, estimate);
-  if (problem.rail_velocity_rate != velocity_rate_) known_ = 0;
+  const bool of_mean = problem.start != nullptr;
+  if (problem.rail_velocity_rate != velocity_rate_ || of_mean != of_mean_) known_ = 0;
   velocity_rate_ = problem.rail_velocity_rate;
+  of_mean_ = of_mean;
   displacement_ = estimate.displacement;
   force_ = estimate.force;
-  add_lack(estimate.force);
+  if (goes_on) add_error(estimate.force);
 }
 
 void ForceEstimate::learn(const TrainContact& train, const ContactProblem& problem, const NewtonWorkspace& workspace,
@@ -69,13 +71,13 @@ void ForceEstimate::learn(const TrainContact& train, const ContactProblem& probl
   for (std::size_t wheel = 0; wheel < end_.size(); ++wheel) {
     end_[wheel] = wheel_at(train, problem, end.displacement, wheel);
   }
-  std::rotate(lack_.begin(), lack_.end() - 1, lack_.end());
-  lack_[0] = end.force - force_;
+  std::rotate(error_.begin(), error_.end() - 1, error_.end());
+  error_[0] = end.force - force_;
   for (std::size_t w = 0; w < workspace.tangent.size(); ++w) {
     const auto k = wheelset_unknowns * static_cast<Eigen::Index>(w);
     const Eigen::Matrix<double, wheelset_unknowns, 1> moved =
         end.displacement.segment<wheelset_unknowns>(k) - displacement_.segment<wheelset_unknowns>(k);
-    lack_[0].segment<wheelset_unknowns>(k) -= workspace.tangent[w].lazyProduct(moved);
+    error_[0].segment<wheelset_unknowns>(k) -= workspace.tangent[w].lazyProduct(moved);
   }
   known_ = std::min(known_ + 1, steps);
 }

@@ -14,10 +14,12 @@ struct NewtonWorkspace;
 struct TrainContact;
 
 /// Contact forces at the estimated displacements of a time step: those at the end of the step before, what the motion
-/// from there changes them by to first order, and what this estimate has lacked in the steps before, which changes
-/// slowly, since the track passes smoothly under the wheels. The estimated displacements keep velocities, and thereby
-/// most of the creepages, but not how far each wheel presses into its rail: where a rail bends under it that changes by
-/// a micrometre, and the force by some kN.
+/// from there changes them by to first order, and the error of this estimate in the steps before: the track passes
+/// smoothly under the wheels, and the error changes slowly. That error is to be added where wheels are computed side by
+/// side and their tangents are new: what an old tangent leaves of its change does work on wheels that bounce. The
+/// estimated displacements keep velocities, and thereby most of the creepages, but not how far each wheel presses into
+/// its rail: where a rail bends under it that changes by a micrometre, and the force by some kN. Mean forces over a
+/// step (ContactProblem::start) do not follow the motion; what it changes them by is then part of the error.
 class ForceEstimate {
  public:
   void forget() noexcept {
@@ -26,9 +28,10 @@ class ForceEstimate {
   }
   /// @param start contacts at the end of the step before
   /// @param workspace its tangents
+  /// @param goes_on whether the error is added
   /// @param estimate displacement, and the forces at the end of the step before, to which the changes are added
   void add_to(const TrainContact& train, const ContactProblem& problem, const ContactSolution& start,
-              const NewtonWorkspace& workspace, ContactSolution& estimate);
+              const NewtonWorkspace& workspace, bool goes_on, ContactSolution& estimate);
   /// @param end the solution of the step that add_to() was called for
   void learn(const TrainContact& train, const ContactProblem& problem, const NewtonWorkspace& workspace,
              const ContactSolution& end);
@@ -42,14 +45,15 @@ class ForceEstimate {
                                       const Eigen::VectorXd& displacement, std::size_t wheel);
   void add_motion(const TrainContact& train, const ContactProblem& problem, const ContactSolution& start,
                   const NewtonWorkspace& workspace, ContactSolution& estimate) const;
-  void add_lack(Eigen::VectorXd& force) const;
+  void add_error(Eigen::VectorXd& force) const;
 
   static constexpr int steps = 3;
-  std::vector<Wheel> end_;                   // of the step before
-  int known_ = 0;                            // steps whose lack is known
-  double velocity_rate_ = 0.0;               // of the step before: where it changes, so does the step's length
-  Eigen::VectorXd displacement_, force_;     // estimated, without the lack
-  std::array<Eigen::VectorXd, steps> lack_;  // of the steps before, the last first
+  std::vector<Wheel> end_;                    // of the step before
+  int known_ = 0;                             // steps whose error is known
+  double velocity_rate_ = 0.0;                // of the step before, which says how long it was
+  bool of_mean_ = false;                      // whether its forces were means over it
+  Eigen::VectorXd displacement_, force_;      // estimated, without the error of the steps before
+  std::array<Eigen::VectorXd, steps> error_;  // of the steps before, the last first
 };
 
 }  // namespace railtab

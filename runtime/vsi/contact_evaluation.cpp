@@ -125,7 +125,9 @@ ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProb
         wheel[i] = {wheel_sides[index(side)], motion, rail_motion(problem, s.displacement, w, side)};
         answer[i] = {&contact.pose, &contact.loaded, &of_wheel[i], &tangent[i]};
       }
-      differentiates |= problem.wheelsets_per_group == 1 && ws.tangent_error[index(w)] > most_tangent_error;
+      // Not for the sake of a wheelset that will probably not be answered again.
+      differentiates |= problem.wheelsets_per_group == 1 && ws.computed[index(w)] != Computed::nothing &&
+                        ws.tangent_error[index(w)] > most_tangent_error;
     }
     const std::span<const WheelState> wheels(wheel.data(), 2 * count);
     const std::uint32_t answered =

@@ -24,9 +24,9 @@ ContactCounts evaluate(const TrainContact& train, const ContactProblem& problem,
 /// Whether all wheels can be computed side by side in a time step, which must count the forces at its end.
 [[nodiscard]] bool computes_side_by_side(const TrainContact& train, const ContactProblem& problem) noexcept;
 
-/// evaluate() of those wheelsets of some whose wheels the loaded table answers alone; in a time step also
-/// differentiate() of those among them whose tangents are old, and of their neighbours. workspace.computed says which.
-/// Contacts of the others are not set until evaluate() does.
+/// evaluate() of those wheelsets of some whose wheels the loaded table answers alone; where each is a group of its own,
+/// also differentiate() of those among them whose tangents err by more than 15 %, by their estimate, and of their
+/// neighbours. workspace.computed says which. Contacts of the others are not set until evaluate() does.
 /// @pre computes_side_by_side()
 ContactCounts evaluate_side_by_side(const TrainContact& train, const ContactProblem& problem,
                                     std::span<const int> wheelsets, ContactSolution& solution,

@@ -142,7 +142,7 @@ struct NewtonWorkspace {
   std::vector<GroupNewton> group;
   std::vector<int> to_invert;    ///< groups whose inverse is to be made
   std::vector<int> to_evaluate;  ///< wheelsets whose forces are to be computed side by side
-  /// Per wheelset, what the last side-by-side computation found.
+  /// Per wheelset, what its last evaluation side by side with others has found.
   enum class Computed : std::uint8_t { nothing, forces, forces_and_tangent };
   std::vector<Computed> computed;
   Eigen::VectorXd residual, correction;

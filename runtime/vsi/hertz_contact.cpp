@@ -5,6 +5,7 @@
 
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/vsi/contact_continuation.hpp"
+#include "railtab/runtime/vsi/contact_evaluation.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
 #include "railtab/runtime/vsi/contact_newton.hpp"
 #include "railtab/runtime/vsi/external_load.hpp"
@@ -106,7 +107,8 @@ class HertzContacts : public ContactLaw {
     ws.solution.force = (energy ? 0.5 * problem_.mean_weight : 1.0) * state.contact.end_force;
     ws.solution.displacement =
         problem_.predicted + (begin_velocity_ - problem_.predicted_velocity) / step.hht.velocity_rate();
-    newton_.estimate.add_to(contact_, problem_, state.contact, newton_, ws.solution);
+    newton_.estimate.add_to(contact_, problem_, state.contact, newton_, computes_side_by_side(contact_, problem_),
+                            ws.solution);
   }
 
   ContactSolve solve(const StepContext& step, int pass, StepWorkspace& ws, StepReport& report) override {

@@ -77,9 +77,8 @@ inline void predict(const HhtScheme& scheme, const LinearMotion& motion, Predict
 /// What the stiffness and the damping of a step's load act on, in terms of the motion at its beginning:
 /// (1+α)ã − αa = u + u_v v + u_w w and (1+α)ṽ − αv = v + v_w w.
 struct WeightedPredictor {
-  double u_v = 0.0, u_w = 0.0, v_w = 0.0;
+  double u_v, u_w, v_w;
 
-  WeightedPredictor() = default;
   explicit WeightedPredictor(const HhtScheme& scheme) {
     const NewmarkPredictor predictor(scheme);
     const double weight = scheme.load_weight();
@@ -87,7 +86,6 @@ struct WeightedPredictor {
     u_w = weight * predictor.displacement_by_acceleration;
     v_w = weight * predictor.velocity_by_acceleration;
   }
-  bool operator==(const WeightedPredictor&) const = default;
 };
 
 /// Closes a step with increments over its predictor. Refers to the motion's vectors.

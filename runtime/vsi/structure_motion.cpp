@@ -33,7 +33,7 @@ const LinearMotion& StructureMotion::whole() const {
 LinearMotion& StructureMotion::whole() {
   update_whole();
   ordered_.layout.reset();
-  predicted_by_.reset();
+  predicted_is_current_ = false;
   return own_order_;
 }
 
@@ -50,7 +50,7 @@ const LinearMotion& StructureMotion::at(std::span<const int> unknowns) const {
 }
 
 void StructureMotion::set(int unknown, const Eigen::RowVector3d& motion) {
-  predicted_by_.reset();
+  predicted_is_current_ = false;
   const auto own = vectors(own_order_);
   const auto ordered = vectors(ordered_);
   for (std::size_t k = 0; k < own.size(); ++k) {
@@ -64,7 +64,7 @@ const OrderedMotion& StructureMotion::in_order(const std::shared_ptr<const Secti
   if (ordered_.layout == layout) return ordered_;
   update_whole();
   ordered_.layout = layout;
-  predicted_by_.reset();
+  predicted_is_current_ = false;
   const auto from = vectors(own_order_);
   const auto to = vectors(ordered_);
   for (std::size_t k = 0; k < to.size(); ++k) {
@@ -77,10 +77,10 @@ const OrderedMotion& StructureMotion::in_order(const std::shared_ptr<const Secti
 SectionedProduct::Motion& StructureMotion::predicted(const WeightedPredictor& p,
                                                      const std::shared_ptr<const SectionLayout>& layout) const {
   const OrderedMotion& m = in_order(layout);
-  if (predicted_by_ != p) {
+  if (!predicted_is_current_) {
     predicted_.u = m.displacement + p.u_v * m.velocity + p.u_w * m.acceleration;
     predicted_.v = m.velocity + p.v_w * m.acceleration;
-    predicted_by_ = p;
+    predicted_is_current_ = true;
   }
   return predicted_;
 }
@@ -91,7 +91,7 @@ std::array<const Eigen::VectorXd*, 3> StructureMotion::numbers() const {
 
 std::array<Eigen::VectorXd*, 3> StructureMotion::numbers() {
   own_order_is_current_ = !ordered_.layout;
-  predicted_by_.reset();
+  predicted_is_current_ = false;
   return ordered_.layout ? vectors(ordered_) : vectors(own_order_);
 }
 
@@ -109,7 +109,7 @@ void StructureMotion::end_step(const HhtScheme& scheme, const WeightedPredictor&
     u[i] = end.u[i] + next.u_v * end.v[i] + next.u_w * end.w[i];
     v[i] = end.v[i] + next.v_w * end.w[i];
   }
-  predicted_by_ = next;
+  predicted_is_current_ = true;
   own_order_is_current_ = false;
 #ifndef NDEBUG
   for (Eigen::VectorXd* vector : vectors(own_order_)) {

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -43,8 +42,8 @@ class StructureMotion {
 
   /// The motion of the layout's unknowns in its order.
   [[nodiscard]] const OrderedMotion& in_order(const std::shared_ptr<const SectionLayout>& layout) const;
-  /// What a predictor makes of the motion, in the layout's order: left by end_step() where that was given the same one.
-  /// Its borders are anyone's to write.
+  /// What a predictor makes of the motion, in the layout's order; end_step() has left it where nothing has changed the
+  /// motion since. Its borders are anyone's to write. @param predictor one for a layout
   [[nodiscard]] SectionedProduct::Motion& predicted(const WeightedPredictor& predictor,
                                                     const std::shared_ptr<const SectionLayout>& layout) const;
   /// Displacement, velocity and acceleration as the next step takes them up: in the order of in_order(), if it was
@@ -53,7 +52,7 @@ class StructureMotion {
   /// The same to be changed.
   [[nodiscard]] std::array<Eigen::VectorXd*, 3> numbers();
   /// Ends a step with an increment in the layout's order. @pre in_order() of that layout, at the step's beginning
-  /// @param next the predictor of the step that will probably follow
+  /// @param next the predictor of that layout
   void end_step(const HhtScheme& scheme, const WeightedPredictor& next, const Eigen::VectorXd& increment);
 
  private:
@@ -63,8 +62,10 @@ class StructureMotion {
   mutable LinearMotion own_order_;
   mutable OrderedMotion ordered_;
   mutable bool own_order_is_current_ = true;
+  // The last bits of predicted_ depend on whether end_step() has made it: runs that go on from a checkpoint are the
+  // same since whole(), which makes a motion the beginning of a new run, has it made again in both.
   mutable SectionedProduct::Motion predicted_;
-  mutable std::optional<WeightedPredictor> predicted_by_;  // none: predicted_ is not of this motion
+  mutable bool predicted_is_current_ = false;
 };
 
 }  // namespace railtab

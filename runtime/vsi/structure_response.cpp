@@ -305,18 +305,22 @@ void StructureResponse::set_entries(const Sparse& stiffness, const Sparse& dampi
 
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
+  std::optional<Kept> wanted;
+  const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.active == dofs; });
+  if (known != kept_.end()) {
+    wanted = std::move(*known);
+    kept_.erase(known);
+  }
   leave_factor();
   active_ = dofs;
-  const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.active == dofs; });
-  if (known == kept_.end()) return make_factor();
-  factor_ = std::move(known->factor);
-  product_ = std::move(known->product);
-  kept_.erase(known);
+  if (!wanted) return make_factor();
+  factor_ = std::move(wanted->factor);
+  product_ = std::move(wanted->product);
 }
 
 void StructureResponse::leave_factor() {
   if (factor_ && keeps_) {
-    std::size_t bytes = factor_->stored_bytes() + (product_ ? product_->bytes() : 0);
+    const std::size_t bytes = factor_->stored_bytes() + (product_ ? product_->bytes() : 0);
     const std::size_t of_others = std::accumulate(kept_.begin(), kept_.end(), std::size_t{0},
                                                   [](std::size_t sum, const Kept& kept) { return sum + kept.bytes; });
     if (static_cast<double>(bytes + of_others) <= most_kept) {

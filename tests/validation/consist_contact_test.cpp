@@ -200,7 +200,9 @@ TEST_F(TurnedVehicle, RunsAsItsFileWrittenTheOtherWayRound) {
         {(folder_ / "power-car.toml").string(), 1, false}, {(folder_ / "end-coach.toml").string(), 1, false}, last};
     const VsiModel model = build_model(train_on_rigid_track(train, wind, 0.5));
     VsiState state = at_rest(model);
-    EXPECT_TRUE(simulate(model, {}, 0.5, 1000, state, {}).complete);
+    IntegrationParameters integration;
+    integration.tolerance = 1e-7;
+    EXPECT_TRUE(simulate(model, integration, 0.5, 1000, state, {}).complete);
     return wheel_loads(model, state);
   };
   const std::vector<double> turned = run({(folder_ / "end-coach.toml").string(), 1, true});

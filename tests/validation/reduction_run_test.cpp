@@ -25,6 +25,7 @@ SceneParameters coach_on_spans(Reduction reduction) {
   scene.spans.assign(4, span);
   scene.spectrum = SpectrumParameters{.fade_in = 0.0};
   scene.integration.time_step = 1e-3;
+  scene.integration.tolerance = 1e-7;  // what the window does, not where an iteration ends
   scene.reduction.kind = reduction;
   return scene;
 }
