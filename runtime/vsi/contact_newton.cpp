@@ -187,6 +187,7 @@ class TrainNewton {
         problem_(problem),
         limits_(limits),
         first_order_(std::pow(limits.force_tolerance / stiffest_contact, 2.0 / 3.0)),
+        known_(forces == InitialForces::known),
         s_(solution),
         ws_(ws),
         side_by_side_(computes_side_by_side(train, problem)) {
@@ -208,13 +209,12 @@ class TrainNewton {
     ws.compliance.resize(index(groups));
     ws.group.resize(index(groups));
     ws.tangent_error.resize(index(groups), 1.0);
-    const bool known = forces == InitialForces::known;
-    if (!known) assemble_compliances(problem, ws);
+    if (!known_) assemble_compliances(problem, ws);
     ws.to_invert.clear();
     for (int g = 0; g < groups; ++g) {
       GroupNewton& n = ws.group[index(g)];
-      n = {.moved = !known, .new_tangent = fresh || n.new_tangent, .extrapolated = known ? n.extrapolated : 0.0};
-      if (!n.new_tangent && !known) ws.to_invert.push_back(g);
+      n = {.moved = !known_, .new_tangent = fresh || n.new_tangent, .extrapolated = known_ ? n.extrapolated : 0.0};
+      if (!n.new_tangent && !known_) ws.to_invert.push_back(g);
     }
     invert(problem, ws.to_invert, ws);
     if (forces == InitialForces::estimated) predict(ws.to_invert);
@@ -394,7 +394,8 @@ class TrainNewton {
     if (change < first_order_ && of_forces < limits_.force_tolerance) {
       // Made all the same where that costs nothing: what is left of every step in the direction of the estimate's error
       // would do work on wheels that bounce.
-      if (may_correct_by_tangent(g, of_forces)) move_by_tangent(g);
+      // Forces that were known, and to which the structure has responded, stay.
+      if (!known_ && may_correct_by_tangent(g, of_forces)) move_by_tangent(g);
       return true;
     }
     if (corrects_by_tangent(g, of_forces)) return false;
@@ -476,6 +477,7 @@ class TrainNewton {
   const NewtonLimits& limits_;
   /// A wheel in the air, whose tangent is zero, gains no more than the tolerance by such a correction [m, rad].
   double first_order_;
+  bool known_;  ///< whether the forces were those at its displacement when the iteration began
   ContactSolution& s_;
   NewtonWorkspace& ws_;
   bool side_by_side_;

@@ -95,7 +95,7 @@ struct NewtonReport {
 
 struct NewtonLimits {
   double tolerance = 1e-11;  ///< of the correction [m, rad]
-  /// Where a correction would change no contact force by more than this, to first order, it is not made [N, N m].
+  /// A correction that changes no contact force by more than this, to first order, is the last one [N, N m].
   double force_tolerance = 0.0;
   int max_iterations = 20;
   /// A correction this small ends the iteration where it no longer gains: what is left is rounding of the forces [m or
