@@ -56,13 +56,13 @@ void ForceEstimate::add_error(Eigen::VectorXd& force) const {
 void ForceEstimate::add_to(const TrainContact& train, const ContactProblem& problem, const ContactSolution& start,
                            const NewtonWorkspace& workspace, bool goes_on, ContactSolution& estimate) {
   if (!problem.start) add_motion(train, problem, start, workspace, estimate);
-  const bool of_mean = problem.start != nullptr;
-  if (problem.rail_velocity_rate != velocity_rate_ || of_mean != of_mean_) known_ = 0;
+  if (!goes_on || problem.rail_velocity_rate != velocity_rate_) known_ = 0;
   velocity_rate_ = problem.rail_velocity_rate;
-  of_mean_ = of_mean;
+  goes_on_ = goes_on;
+  if (!goes_on) return;
   displacement_ = estimate.displacement;
   force_ = estimate.force;
-  if (goes_on) add_error(estimate.force);
+  add_error(estimate.force);
 }
 
 void ForceEstimate::learn(const TrainContact& train, const ContactProblem& problem, const NewtonWorkspace& workspace,
@@ -71,6 +71,7 @@ void ForceEstimate::learn(const TrainContact& train, const ContactProblem& probl
   for (std::size_t wheel = 0; wheel < end_.size(); ++wheel) {
     end_[wheel] = wheel_at(train, problem, end.displacement, wheel);
   }
+  if (!goes_on_) return;
   std::rotate(error_.begin(), error_.end() - 1, error_.end());
   error_[0] = end.force - force_;
   for (std::size_t w = 0; w < workspace.tangent.size(); ++w) {

@@ -19,7 +19,7 @@ struct TrainContact;
 /// side and their tangents are new: what an old tangent leaves of its change does work on wheels that bounce. The
 /// estimated displacements keep velocities, and thereby most of the creepages, but not how far each wheel presses into
 /// its rail: where a rail bends under it that changes by a micrometre, and the force by some kN. Mean forces over a
-/// step (ContactProblem::start) do not follow the motion; what it changes them by is then part of the error.
+/// step (ContactProblem::start) do not follow the motion.
 class ForceEstimate {
  public:
   void forget() noexcept {
@@ -51,7 +51,7 @@ class ForceEstimate {
   std::vector<Wheel> end_;                    // of the step before
   int known_ = 0;                             // steps whose error is known
   double velocity_rate_ = 0.0;                // of the step before, which says how long it was
-  bool of_mean_ = false;                      // whether its forces were means over it
+  bool goes_on_ = false;                      // whether the error of this step will be wanted
   Eigen::VectorXd displacement_, force_;      // estimated, without the error of the steps before
   std::array<Eigen::VectorXd, steps> error_;  // of the steps before, the last first
 };

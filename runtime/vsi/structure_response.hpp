@@ -67,7 +67,7 @@ struct KnownLoad {
 /// Buffers of the structure's solution of one step, reused.
 struct StructureSolution {
   DividedSubstitution substitution;
-  SectionedProduct::Motion motion;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t)
+  SectionedProduct::Motion motion;  ///< (1+α)ã − αa(t), (1+α)ṽ − αv(t) of a structure that is not in sections
   Eigen::VectorXd load, increment;
 };
 
