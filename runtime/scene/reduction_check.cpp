@@ -26,6 +26,19 @@ struct Difference {
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
+// Root mean square difference over that of what differs from the first step.
+double rms_of_dynamic(const std::vector<std::vector<float>>& reduced, const std::vector<std::vector<float>>& whole) {
+  double difference = 0.0, dynamic = 0.0;
+  for (std::size_t step = 0; step < std::min(whole.size(), reduced.size()); ++step) {
+    for (std::size_t i = 0; i < whole[step].size(); ++i) {
+      const double value = whole[step][i];
+      difference += std::pow(reduced[step][i] - value, 2);
+      dynamic += std::pow(value - whole[0][i], 2);
+    }
+  }
+  return ratio(std::sqrt(difference), std::sqrt(dynamic));
+}
+
 ComparedHistory history_of(const SceneParameters& scene, const TimedModel& timed, double duration) {
   SceneParameters stretch = scene;
   stretch.integration.duration = duration;
@@ -41,7 +54,11 @@ ComparedHistory history_of(const SceneParameters& scene, const TimedModel& timed
   };
   observer.record = [&](const StepRecord& record) {
     std::vector<float>& force = history.force.emplace_back();
-    for (const WheelRecord& wheel : record.wheels) force.push_back(static_cast<float>(wheel.Q));
+    std::vector<float>& lateral = history.lateral.emplace_back();
+    for (const WheelRecord& wheel : record.wheels) {
+      force.push_back(static_cast<float>(wheel.Q));
+      lateral.push_back(static_cast<float>(wheel.Y));
+    }
     std::vector<float>& acceleration = history.deck.emplace_back();
     for (std::size_t n : deck) acceleration.push_back(static_cast<float>(record.nodes[n].acceleration[2]));
   };
@@ -94,6 +111,9 @@ ReductionError compare(const ComparedHistory& reduced, const ComparedHistory& wh
   error.force_static = ratio(force.max, largest_load);
   error.deck_max = ratio(deck.max, largest_acceleration);
   error.deck_rms = ratio(deck.rms(), largest_acceleration);
+  error.rms_Q = rms_of_dynamic(reduced.force, whole.force);
+  error.rms_Y = rms_of_dynamic(reduced.lateral, whole.lateral);
+  error.rms_deck = rms_of_dynamic(reduced.deck, whole.deck);
   error.peak_force = ratio(std::abs(peak_reduced - peak), peak);
   error.peak_deck = ratio(std::abs(peak_acceleration - largest_acceleration), largest_acceleration);
   return error;

@@ -18,6 +18,9 @@ struct ReductionError {
   double dynamic_force = 0.0, deck_acceleration = 0.0;  ///< these largest amounts, without reduction [N], [m/s²]
   double peak_force = 0.0;                              ///< relative difference of the largest Q
   double peak_deck = 0.0;                               ///< relative difference of the largest deck acceleration
+  /// Root mean square differences of Q, of Y and of the deck's vertical acceleration over the root mean square of their
+  /// dynamic parts, what the first record has not.
+  double rms_Q = 0.0, rms_Y = 0.0, rms_deck = 0.0;
   RunSummary reduced, whole;
 };
 
@@ -26,11 +29,11 @@ struct ReductionError {
 /// to its end
 [[nodiscard]] ReductionError check_reduction(const SceneParameters& scene, double duration);
 
-/// What of a run the comparison needs: Q of every wheel and the deck's vertical accelerations, step by step.
+/// What of a run the comparison needs: Q and Y of every wheel and the deck's vertical accelerations, step by step.
 struct ComparedHistory {
-  std::vector<double> static_load;              ///< [N] per wheel
-  std::vector<std::vector<float>> force, deck;  ///< per step [N], [m/s²]
-  double seconds_steps = 0.0;                   ///< processor time of all steps
+  std::vector<double> static_load;                       ///< [N] per wheel
+  std::vector<std::vector<float>> force, lateral, deck;  ///< per step [N], [N], [m/s²]
+  double seconds_steps = 0.0;                            ///< processor time of all steps
   RunSummary summary;
 };
 [[nodiscard]] ComparedHistory compared_history(const SceneParameters& scene, double duration);
