@@ -86,6 +86,15 @@ struct WeightedPredictor {
     u_w = weight * predictor.displacement_by_acceleration;
     v_w = weight * predictor.velocity_by_acceleration;
   }
+  /// Of numbers, or of vectors: an expression that refers to them.
+  template <class T>
+  [[nodiscard]] auto displacement(const T& u, const T& v, const T& w) const {
+    return u + u_v * v + u_w * w;
+  }
+  template <class T>
+  [[nodiscard]] auto velocity(const T& v, const T& w) const {
+    return v + v_w * w;
+  }
 };
 
 /// Closes a step with increments over its predictor. Refers to the motion's vectors.

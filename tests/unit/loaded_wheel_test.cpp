@@ -464,6 +464,35 @@ TEST(LoadedWheel, MeanForceDoesTheWorkOfTheEnergysChange) {
   }
 }
 
+TEST(LoadedWheel, EquivalentDescentChangesTheEnergyAsAMotionDoes) {
+  States states(States::Rails::still);
+  const WheelContactModel model = model_with(LinearCreep{});
+  const auto energy = [](const WheelsetPose& pose) { return wheel_contact(geometry(), pose).loaded.energy; };
+  for (int n = 0; n < 20; ++n) {
+    const State s = states.next(WheelSide::right);
+    const WheelsetPose from = relative_pose(geometry().pair(), s.side, s.wheelset, s.rail);
+    const WheelContact contact = s.contact();
+    const LoadedWheelForce force = wheel_force(model, s.side, s.wheelset, s.rail, contact);
+    const ContactMemory memory = contact_memory(geometry().pair(), contact, force);
+    ASSERT_EQ(memory.loaded.weight, 1.0);
+    const auto moved = [&](double share, const WheelsetPose& by) {
+      return WheelsetPose{from.y + share * by.y, from.z + share * by.z, from.roll + share * by.roll,
+                          from.yaw + share * by.yaw};
+    };
+    constexpr double h = 1e-8;
+    const auto half_change = [&](const WheelsetPose& by) {
+      return 0.5 * (energy(moved(1, by)) - energy(moved(-1, by)));
+    };
+    const double per_metre = half_change({0, h, 0, 0}) / h;
+    EXPECT_GT(per_metre, 1e3);
+    for (const WheelsetPose& by :
+         {WheelsetPose{0, h, 0, 0}, {h, 0, 0, 0}, {0, 0, h, 0}, {0, 0, 0, h}, {h, -h, 2 * h, h}}) {
+      const double descent = equivalent_descent(memory, force.normal, from, moved(1, by));
+      EXPECT_NEAR(per_metre * descent, half_change(by), 1e-5 * per_metre * h);
+    }
+  }
+}
+
 // Before the step the table had no part in the contact: its energy then is not known.
 TEST(LoadedWheel, MeanForceOfAStepIntoTheTableIsHalfOfThatAtItsEnd) {
   States states(States::Rails::still);
