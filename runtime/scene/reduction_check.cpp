@@ -26,14 +26,16 @@ struct Difference {
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
-// Root mean square difference over that of what differs from the first step.
+// Root mean square difference over that of what differs from the mean over time, of quantities by steps.
 double rms_of_dynamic(const std::vector<std::vector<float>>& reduced, const std::vector<std::vector<float>>& whole) {
+  const std::size_t steps = std::min(whole.size(), reduced.size()), quantities = steps > 0 ? whole.front().size() : 0;
   double difference = 0.0, dynamic = 0.0;
-  for (std::size_t step = 0; step < std::min(whole.size(), reduced.size()); ++step) {
-    for (std::size_t i = 0; i < whole[step].size(); ++i) {
-      const double value = whole[step][i];
-      difference += std::pow(reduced[step][i] - value, 2);
-      dynamic += std::pow(value - whole[0][i], 2);
+  for (std::size_t i = 0; i < quantities; ++i) {
+    double mean = 0.0;
+    for (std::size_t step = 0; step < steps; ++step) mean += whole[step][i] / static_cast<double>(steps);
+    for (std::size_t step = 0; step < steps; ++step) {
+      difference += std::pow(reduced[step][i] - whole[step][i], 2);
+      dynamic += std::pow(whole[step][i] - mean, 2);
     }
   }
   return ratio(std::sqrt(difference), std::sqrt(dynamic));

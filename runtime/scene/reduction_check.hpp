@@ -18,8 +18,8 @@ struct ReductionError {
   double dynamic_force = 0.0, deck_acceleration = 0.0;  ///< these largest amounts, without reduction [N], [m/s²]
   double peak_force = 0.0;                              ///< relative difference of the largest Q
   double peak_deck = 0.0;                               ///< relative difference of the largest deck acceleration
-  /// Root mean square differences of Q, of Y and of the deck's vertical acceleration over the root mean square of their
-  /// dynamic parts, what the first record has not.
+  /// Of Q, of Y and of the deck's vertical acceleration: root mean square difference over that of the dynamic part,
+  /// what differs from the mean over time.
   double rms_Q = 0.0, rms_Y = 0.0, rms_deck = 0.0;
   RunSummary reduced, whole;
 };

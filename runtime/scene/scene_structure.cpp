@@ -28,16 +28,16 @@ bool has_deck_nodes(const SceneParameters& scene) noexcept {
 
 namespace {
 
-/// Lowest natural frequency of a rail between sleepers [Hz]: in bending with its nodes there held and clamped, in
-/// torsion with their twist held, whose rate has no inertia.
+/// A lower bound of the natural frequencies of a rail whose nodes, at the sleepers, are held, in bending or torsion
+/// [Hz]. Torsion's square is at least the sum of the squares for twist alone and for warping alone.
 double lowest_frequency_of_bay(const TrackParameters& track) {
   constexpr double pi = std::numbers::pi, clamped = 22.373;  // (βL)² of a beam with clamped ends
   const RailBeamParameters& rail = track.rail;
-  const double L = track.sleeper_spacing, wave_number = pi / L;
-  const double bending = clamped / (L * L) * std::sqrt(rail.E * std::min(rail.Iy, rail.Iz) / rail.mass);
-  const double torsion =
-      wave_number * std::sqrt(rail.GJ / rail.rotary_inertia) * std::hypot(1.0, wave_number * rail.warping_length);
-  return std::min(bending, torsion) / (2.0 * pi);
+  const double L = track.sleeper_spacing;
+  const double bending = clamped / (2.0 * pi * L * L) * std::sqrt(rail.E * std::min(rail.Iy, rail.Iz) / rail.mass);
+  const double wave_speed = std::sqrt(rail.GJ / rail.rotary_inertia);
+  const double warping = clamped / (2.0 * pi * L * L) * rail.warping_length * wave_speed;
+  return std::min(bending, std::hypot(wave_speed / (2.0 * L), warping));
 }
 
 DeckRecord deck_record(const SceneParameters& scene) noexcept {

@@ -111,7 +111,7 @@ struct StructureSupports {
 /// y, z, roll, pitch, yaw, twist rate.
 inline constexpr int lines_per_node = 7;
 
-/// A linear structure under the train: M a'' + C a' + K a = F, symmetric, K positive definite, M semidefinite.
+/// A linear structure under the train: M a'' + C a' + K a = F, symmetric, K positive definite.
 struct StructureModel {
   Eigen::SparseMatrix<double> mass, damping, stiffness;
   std::array<RailLine, 2> rail;      ///< indexed by RailSide

@@ -1,6 +1,7 @@
 #include "railtab/runtime/structure/torsion_element.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -105,6 +106,22 @@ Eigen::Matrix4d torsion_stiffness(const TorsionElement& element) noexcept {
       -torque, -couple, torque, -couple,        //
       couple, odd - even, -couple, odd + even;
   return element.GJ * K;
+}
+
+Eigen::Matrix4d torsion_mass(const TorsionElement& element, double rotary_inertia) noexcept {
+  // Gauss's eight points on −1..1: place and weight of those on one side.
+  constexpr std::array<std::array<double, 2>, 4> points{{{0.1834346424956498, 0.3626837833783620},
+                                                         {0.5255324099163290, 0.3137066458778873},
+                                                         {0.7966664774136267, 0.2223810344533745},
+                                                         {0.9602898564975363, 0.1012285362903763}}};
+  Eigen::Matrix4d M = Eigen::Matrix4d::Zero();
+  for (const auto& [place, weight] : points) {
+    for (const double t : {-place, place}) {
+      const Eigen::Vector4d N = torsion_shape(element, 0.5 * element.length * (1.0 + t)).twist;
+      M += 0.5 * element.length * weight * rotary_inertia * N * N.transpose();
+    }
+  }
+  return M;
 }
 
 double torsion_compliance(const TorsionElement& element, double x, double loaded) noexcept {

@@ -23,6 +23,8 @@ struct TorsionShape {
 
 /// Stiffness by (φ_1, φ_1', φ_2, φ_2').
 [[nodiscard]] Eigen::Matrix4d torsion_stiffness(const TorsionElement& element) noexcept;
+/// Consistent mass by the same. @param rotary_inertia about x, per length [kg m²/m]
+[[nodiscard]] Eigen::Matrix4d torsion_mass(const TorsionElement& element, double rotary_inertia) noexcept;
 
 /// Twist at x under a unit moment at `loaded`, both from the first node, of the element whose nodes neither twist nor
 /// warp [rad/(N m)]. @pre both within 0..length

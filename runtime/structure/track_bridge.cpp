@@ -89,20 +89,16 @@ struct SpringDamper {
         c_about(c_roll, 0, 0) {}
 };
 
-/// Bending of the beam, and torsion with warping. The rotary inertia is at the nodes: between them the twist then obeys
-/// the static equation that its shapes and element_compliance() solve, and its second derivative under a wheel does not
-/// jump at nodes. A consistent mass would bring bimoments of inertia to them.
+/// Bending of the beam, and torsion with warping.
 void add_rail(MatrixAssembly& assembly, const NodeLine& line, const RailBeamParameters& rail) {
   const RayleighDamping damping{rail.mass_damping, rail.stiffness_damping};
   add_beam(assembly, line.x, line.dof, {.E = rail.E, .A = rail.A, .Iy = rail.Iy, .Iz = rail.Iz, .mass = rail.mass},
            damping);
   for (size_t e = 0; e + 1 < line.x.size(); ++e) {
     const TorsionElement element{rail.GJ, rail.warping_length, line.x[e + 1] - line.x[e]};
-    const double of_node = 0.5 * rail.rotary_inertia * element.length;
-    const Eigen::Matrix4d mass = Eigen::Vector4d(of_node, 0.0, of_node, 0.0).asDiagonal();
     constexpr size_t roll = 3;
     const std::array<int, 4> dofs{line.dof[e][roll], line.twist_rate[e], line.dof[e + 1][roll], line.twist_rate[e + 1]};
-    add_element(assembly, dofs, mass, torsion_stiffness(element), damping);
+    add_element(assembly, dofs, torsion_mass(element, rail.rotary_inertia), torsion_stiffness(element), damping);
   }
 }
 

@@ -86,14 +86,11 @@ struct WeightedPredictor {
     u_w = weight * predictor.displacement_by_acceleration;
     v_w = weight * predictor.velocity_by_acceleration;
   }
-  /// Of numbers, or of vectors: an expression that refers to them.
-  template <class T>
-  [[nodiscard]] auto displacement(const T& u, const T& v, const T& w) const {
-    return u + u_v * v + u_w * w;
-  }
-  template <class T>
-  [[nodiscard]] auto velocity(const T& v, const T& w) const {
-    return v + v_w * w;
+  /// Of numbers, or of vectors.
+  template <class Begin, class Predicted>
+  void predict(const Begin& u, const Begin& v, const Begin& w, Predicted&& displacement, Predicted&& velocity) const {
+    displacement = u + u_v * v + u_w * w;
+    velocity = v + v_w * w;
   }
 };
 

@@ -78,8 +78,7 @@ SectionedProduct::Motion& StructureMotion::predicted(const WeightedPredictor& p,
                                                      const std::shared_ptr<const SectionLayout>& layout) const {
   const OrderedMotion& m = in_order(layout);
   if (!predicted_is_current_) {
-    predicted_.u = p.displacement(m.displacement, m.velocity, m.acceleration);
-    predicted_.v = p.velocity(m.velocity, m.acceleration);
+    p.predict(m.displacement, m.velocity, m.acceleration, predicted_.u, predicted_.v);
     predicted_is_current_ = true;
   }
   return predicted_;
@@ -106,8 +105,7 @@ void StructureMotion::end_step(const HhtScheme& scheme, const WeightedPredictor&
 #pragma GCC ivdep
   for (Eigen::Index i = 0; i < size; ++i) {
     end.move(static_cast<std::size_t>(i), increment[i]);
-    u[i] = next.displacement(end.u[i], end.v[i], end.w[i]);
-    v[i] = next.velocity(end.v[i], end.w[i]);
+    next.predict(end.u[i], end.v[i], end.w[i], u[i], v[i]);
   }
   predicted_is_current_ = true;
   own_order_is_current_ = false;

@@ -481,9 +481,8 @@ void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoa
   u.resize(dofs_);
   v.resize(dofs_);
   const LinearMotion& begin = motion.whole();
-  const auto velocity = active_.of(begin.velocity), acceleration = active_.of(begin.acceleration);
-  active_.of(u) = predictor_.displacement(active_.of(begin.displacement), velocity, acceleration);
-  active_.of(v) = predictor_.velocity(velocity, acceleration);
+  predictor_.predict(active_.of(begin.displacement), active_.of(begin.velocity), active_.of(begin.acceleration),
+                     active_.of(u), active_.of(v));
   const Eigen::Index first = active_.begin, last = active_.end();
   double* const f = solution.load.data();
   for (Eigen::Index j = first; j < last; ++j) {

@@ -471,6 +471,7 @@ TEST_F(VsiCommand, AReductionIsCheckedAlone) {
   const auto number = [&](const std::string& name) {
     return std::atol(json.output.c_str() + json.output.find("\"" + name + "\": ") + name.size() + 4);
   };
+  EXPECT_NE(json.output.find("\"rms_Y\": "), std::string::npos) << json.output;
   EXPECT_GT(number("unknowns"), 1000);
   EXPECT_LT(number("unknowns"), 0.9 * static_cast<double>(number("unknowns_none")));
 }

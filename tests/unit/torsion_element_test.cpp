@@ -65,6 +65,19 @@ TEST(TorsionElement, StiffnessIsTheIntegralOfTheStrains) {
   }
 }
 
+TEST(TorsionElement, MassOfARigidTwistIsTheRotaryInertia) {
+  for (const TorsionElement& element : elements) {
+    const Eigen::Vector4d rigid(1.0, 0.0, 1.0, 0.0);
+    const Eigen::Matrix4d M = torsion_mass(element, 0.28);
+    EXPECT_NEAR(rigid.dot(M * rigid), 0.28 * element.length, 1e-12);
+    EXPECT_LT((M - M.transpose()).norm(), 1e-15);
+  }
+  // cubic shapes: those of a beam in bending
+  const Eigen::Matrix4d cubic = torsion_mass({2e5, 600.0, 0.6}, 1.0);
+  EXPECT_NEAR(cubic(0, 0), 156.0 * 0.6 / 420.0, 1e-7);
+  EXPECT_NEAR(cubic(1, 2), 13.0 * 0.6 * 0.6 / 420.0, 1e-7);
+}
+
 /// Twist at the node between two elements, of the whole that is held at both ends, under a unit moment there; and the
 /// twist at `x` of the second.
 Eigen::Vector2d twist_of_two(double GJ, double lambda, double first, double second, double x) {

@@ -51,8 +51,7 @@ double asymmetry(const Eigen::SparseMatrix<double>& matrix) {
   return (matrix - transposed).norm() / matrix.norm();
 }
 
-// Bending and warping of rails have no inertia of their own.
-TEST(TrackBridge, MatricesAreSymmetricStiffnessPositiveDefiniteAndMassSemidefinite) {
+TEST(TrackBridge, MatricesAreSymmetricAndStiffnessAndMassPositiveDefinite) {
   BridgeParameters eccentric;
   eccentric.track_offset = 2.2;
   for (const std::vector<BridgeParameters>& spans :
@@ -62,9 +61,9 @@ TEST(TrackBridge, MatricesAreSymmetricStiffnessPositiveDefiniteAndMassSemidefini
       ASSERT_EQ(matrix->rows(), model.dofs());
       EXPECT_LT(asymmetry(*matrix), 1e-15);
     }
-    constexpr double short_step = 1e-10;  // a square of time [s²]
-    EXPECT_NO_THROW(SparseLdlt(model.stiffness, "not positive definite"));
-    EXPECT_NO_THROW(SparseLdlt(model.mass + short_step * model.stiffness, "negative mass"));
+    for (const Eigen::SparseMatrix<double>* matrix : {&model.mass, &model.stiffness}) {
+      EXPECT_NO_THROW(SparseLdlt(*matrix, "not positive definite"));
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -34,8 +35,26 @@ TEST(ReducedRun, WindowIsWithinOnePercent) {
   const ReductionError e = check_reduction(coach_on_spans(Reduction::window), 0.8);
   EXPECT_LT(e.force_max, 0.01);
   EXPECT_LT(e.deck_max, 0.01);
+  EXPECT_LT(e.rms_Y, 0.01);
+  EXPECT_GT(e.rms_Y, 0.0);
   EXPECT_GT(e.force_max, 0.0) << "a window is an approximation: equal runs would be one run";
   EXPECT_EQ(e.whole.window_error, 0.0);
+}
+
+// Two steps of one wheel: the part that differs from the mean counts.
+TEST(ReductionError, RootMeanSquaresAreOfTheDynamicPart) {
+  ComparedHistory whole, reduced;
+  whole.static_load = {50.0};
+  whole.force = {{99.0F}, {101.0F}};
+  whole.lateral = {{-5.0F}, {5.0F}};
+  whole.deck = {{7.0F}, {7.0F}};
+  reduced = whole;
+  reduced.force[0][0] = 99.5F;
+  reduced.lateral[1][0] = 2.0F;
+  const ReductionError e = compare(reduced, whole);
+  EXPECT_DOUBLE_EQ(e.rms_Q, std::sqrt(0.25 / 2.0));
+  EXPECT_DOUBLE_EQ(e.rms_Y, std::sqrt(9.0 / 50.0));
+  EXPECT_EQ(e.rms_deck, 0.0);
 }
 
 // What a run states of its window follows what the window does to its results.

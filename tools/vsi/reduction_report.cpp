@@ -24,6 +24,9 @@ void print_as_json(const SceneParameters& scene, const ReductionError& e) {
                    {"deck_acceleration", e.deck_acceleration},
                    {"peak_force", e.peak_force},
                    {"peak_deck", e.peak_deck},
+                   {"rms_Q", e.rms_Q},
+                   {"rms_Y", e.rms_Y},
+                   {"rms_deck", e.rms_deck},
                    {"unknowns", e.reduced.active_dofs},
                    {"unknowns_none", e.whole.active_dofs},
                    {"step_ms", step_ms(e.reduced)},
@@ -53,6 +56,11 @@ void print_text(const SceneParameters& scene, const ReductionError& e) {
     print_formatted("  {:<28} less than {} m/s², nothing to compare: compare until the train is on the bridge\n",
                     "deck acceleration", still_deck);
     print_formatted("  {:<28}{:>9.3g} % of the largest Q\n", "peaks", 100.0 * e.peak_force);
+  }
+  if (e.dynamic_force > still_force) {
+    print_formatted(
+        "  {:<28}{:>9.3g} % Q {:>9.3g} % Y {:>9.3g} % deck acceleration: rms of what differs from the mean\n",
+        "dynamic parts", 100.0 * e.rms_Q, 100.0 * e.rms_Y, 100.0 * e.rms_deck);
   }
   if (const double left = scene.integration.tolerance; e.force_static < left) {
     print_formatted(

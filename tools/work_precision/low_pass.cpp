@@ -58,6 +58,7 @@ void filter(std::vector<std::vector<float>>& steps, double limit, double time_st
 ComparedHistory low_passed(const ComparedHistory& history, double time_step, double force_limit, double deck_limit) {
   ComparedHistory result = history;
   filter(result.force, force_limit, time_step);
+  filter(result.lateral, force_limit, time_step);
   filter(result.deck, deck_limit, time_step);
   return result;
 }

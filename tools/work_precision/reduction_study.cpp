@@ -27,7 +27,7 @@ constexpr const char* usage =
     "--long: eight coaches on a viaduct of 1 km, the window against the whole line; writes FOLDER/long_line.csv.\n"
     "--steps: they enter it at 72 km/h, time steps against one of 0.125 ms, by patches and with the loaded contact "
     "that "
-    "TABLE.h5 then has; writes FOLDER/crossing_steps.csv.\n";
+    "TABLE.h5 must have; writes FOLDER/crossing_steps.csv.\n";
 
 SceneParameters viaduct(const std::string& table) {
   SceneParameters scene;
@@ -149,9 +149,8 @@ void study_steps(const std::string& table, const std::filesystem::path& folder) 
       origin() +
       "# eight coaches enter a viaduct of 1 km at 72 km/h, 9 s in a window; against steps of 0.125 ms\n"
       "# force_20hz, deck_30hz: largest difference below 20 Hz (forces, EN 14363) and 30 Hz (deck, EN 1990), over the "
-      "largest below that; peak_*: of the largest values themselves; force_max, deck_max: nothing filtered; rms_*: "
-      "root "
-      "mean square difference, nothing filtered, over that of the dynamic part\n"
+      "largest below that; peak_*: of the largest values themselves; force_max, deck_max: nothing filtered\n"
+      "# rms_*: root mean square difference over that of what differs from the mean over time, nothing filtered\n"
       "# times: processor time of one core\n"
       "contact,time_step_ms,step_ms,real_time,force_max,deck_max,force_20hz,deck_30hz,peak_force_20hz,peak_deck_30hz,"
       "rms_Q,rms_Y,rms_deck\n";
