@@ -58,9 +58,8 @@ void print_text(const SceneParameters& scene, const ReductionError& e) {
     print_formatted("  {:<28}{:>9.3g} % of the largest Q\n", "peaks", 100.0 * e.peak_force);
   }
   if (e.dynamic_force > still_force) {
-    print_formatted(
-        "  {:<28}{:>9.3g} % Q {:>9.3g} % Y {:>9.3g} % deck acceleration: rms of what differs from the mean\n",
-        "dynamic parts", 100.0 * e.rms_Q, 100.0 * e.rms_Y, 100.0 * e.rms_deck);
+    print_formatted("  {:<28}{:>9.3g} % Q {:>9.3g} % Y, rms of what differs from the mean\n", "dynamic parts",
+                    100.0 * e.rms_Q, 100.0 * e.rms_Y);
   }
   if (const double left = scene.integration.tolerance; e.force_static < left) {
     print_formatted(

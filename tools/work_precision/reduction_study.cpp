@@ -25,9 +25,8 @@ constexpr const char* usage =
     "Two coaches enter a viaduct of ten spans of 32 m at 200 km/h: runs in windows of several lengths and "
     "without a reduction.\nWrites FOLDER/reduction.csv.\n"
     "--long: eight coaches on a viaduct of 1 km, the window against the whole line; writes FOLDER/long_line.csv.\n"
-    "--steps: they enter it at 72 km/h, time steps against one of 0.125 ms, by patches and with the loaded contact "
-    "that "
-    "TABLE.h5 must have; writes FOLDER/crossing_steps.csv.\n";
+    "--steps: they enter it at 72 km/h, time steps against one of 0.125 ms, by patches and with the loaded contact, "
+    "which TABLE.h5 must have; writes FOLDER/crossing_steps.csv.\n";
 
 SceneParameters viaduct(const std::string& table) {
   SceneParameters scene;
