@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/measures/dynamic_difference.hpp"
 #include "railtab/runtime/scene/timed_model.hpp"
 
 namespace railtab {
@@ -26,19 +27,9 @@ struct Difference {
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
-// Root mean square difference over that of what differs from the mean over time, of quantities by steps.
 double rms_of_dynamic(const std::vector<std::vector<float>>& reduced, const std::vector<std::vector<float>>& whole) {
-  const std::size_t steps = std::min(whole.size(), reduced.size()), quantities = steps > 0 ? whole.front().size() : 0;
-  double difference = 0.0, dynamic = 0.0;
-  for (std::size_t i = 0; i < quantities; ++i) {
-    double mean = 0.0;
-    for (std::size_t step = 0; step < steps; ++step) mean += whole[step][i] / static_cast<double>(steps);
-    for (std::size_t step = 0; step < steps; ++step) {
-      difference += std::pow(reduced[step][i] - whole[step][i], 2);
-      dynamic += std::pow(whole[step][i] - mean, 2);
-    }
-  }
-  return ratio(std::sqrt(difference), std::sqrt(dynamic));
+  const DynamicDifference of = dynamic_difference(whole, reduced);
+  return ratio(std::sqrt(of.square), std::sqrt(of.dynamic_square));
 }
 
 ComparedHistory history_of(const SceneParameters& scene, const TimedModel& timed, double duration) {

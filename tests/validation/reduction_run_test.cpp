@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "railtab/runtime/measures/dynamic_difference.hpp"
 #include "railtab/runtime/scene/reduction_check.hpp"
 
 namespace railtab {
@@ -55,6 +56,9 @@ TEST(ReductionError, RootMeanSquaresAreOfTheDynamicPart) {
   EXPECT_DOUBLE_EQ(e.rms_Q, std::sqrt(0.25 / 2.0));
   EXPECT_DOUBLE_EQ(e.rms_Y, std::sqrt(9.0 / 50.0));
   EXPECT_EQ(e.rms_deck, 0.0);
+  const DynamicDifference of = dynamic_difference(whole.lateral, reduced.lateral);
+  EXPECT_EQ(of.largest, 3.0);
+  EXPECT_EQ(of.dynamic_largest, 5.0);
 }
 
 // What a run states of its window follows what the window does to its results.

@@ -52,9 +52,9 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
 }
 
 // Rails that bend and twist without kinks load their nodes smoothly as a wheel passes. The curvature of the shapes
-// jumps at nodes, the less the shorter elements are, and excites vibrations near 1 kHz. Without them Y has harmonics of
-// the sleepers' passing up to 0.8 kHz, which the first of these steps do not resolve.
-TEST(TrackOrder, WheelForcesAreOfSecondOrderOnShortElements) {
+// jumps at nodes, the less the shorter elements are, and excites vibrations near 1 kHz. Without them Y has higher
+// harmonics of the sleepers' passing, which the first of these steps do not resolve.
+TEST(TrackOrder, WheelForcesConvergeAsFarAsStepsResolveThem) {
   struct Case {
     const char* name;
     int elements_per_bay;  // 0: the default

@@ -5,6 +5,8 @@
 #include <ctime>
 #include <limits>
 
+#include "railtab/runtime/measures/dynamic_difference.hpp"
+
 namespace railtab::work_precision {
 
 namespace {
@@ -70,27 +72,16 @@ std::vector<MeasuredRun> median_runs(std::size_t count, bool quick,
 
 RunError run_error(const MeasuredRun& reference, const MeasuredRun& run, Quantity quantity) {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  if (reference.records.empty() || reference.records.size() != run.records.size()) return {none, none};
-  std::vector<double> mean = channels(reference, reference.records.front(), quantity);
-  std::fill(mean.begin(), mean.end(), 0.0);
-  for (const StepRecord& record : reference.records) {
-    const std::vector<double> r = channels(reference, record, quantity);
-    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += r[k] / static_cast<double>(reference.records.size());
-  }
-  double difference2 = 0.0, dynamic2 = 0.0, difference = 0.0, dynamic = 0.0;
+  if (reference.records.size() != run.records.size()) return {none, none};
+  std::vector<std::vector<double>> expected, found;
   for (std::size_t i = 0; i < reference.records.size(); ++i) {
     if (std::abs(reference.records[i].time - run.records[i].time) > 1e-9) return {none, none};
-    const std::vector<double> r = channels(reference, reference.records[i], quantity);
-    const std::vector<double> a = channels(run, run.records[i], quantity);
-    for (std::size_t k = 0; k < mean.size(); ++k) {
-      difference2 += (a[k] - r[k]) * (a[k] - r[k]);
-      dynamic2 += (r[k] - mean[k]) * (r[k] - mean[k]);
-      difference = std::max(difference, std::abs(a[k] - r[k]));
-      dynamic = std::max(dynamic, std::abs(r[k] - mean[k]));
-    }
+    expected.push_back(channels(reference, reference.records[i], quantity));
+    found.push_back(channels(run, run.records[i], quantity));
   }
-  if (!(dynamic2 > 0.0)) return {none, none};
-  return {std::sqrt(difference2 / dynamic2), difference / dynamic};
+  const DynamicDifference of = dynamic_difference(expected, found);
+  if (!(of.dynamic_square > 0.0)) return {none, none};
+  return {std::sqrt(of.square / of.dynamic_square), of.largest / of.dynamic_largest};
 }
 
 }  // namespace railtab::work_precision
