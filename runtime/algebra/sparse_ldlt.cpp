@@ -5,6 +5,8 @@
 #include <cassert>
 #include <numeric>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "railtab/runtime/algebra/multifrontal.hpp"
 #include "railtab/runtime/base/index.hpp"
@@ -17,7 +19,7 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 // Blocks in an order in which none waits for the one before it: leaves of the elimination tree first, then what hangs
-// on leaves only, and so on.
+// on leaves only, and so on; of these, equal ones follow each other, as the processor foresees what is done again.
 std::vector<int> by_height(const EliminationTree& tree) {
   std::vector<int> height(tree.parent.size(), 0), order(tree.parent.size());
   std::iota(order.begin(), order.end(), 0);
@@ -26,7 +28,8 @@ std::vector<int> by_height(const EliminationTree& tree) {
     int& parent = height[index(tree.parent[index(b)])];
     parent = std::max(parent, height[index(b)] + 1);
   }
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return height[index(a)] < height[index(b)]; });
+  const auto key = [&](int b) { return std::tuple(height[index(b)], tree.columns(b), tree.rows(b).size()); };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
   return order;
 }
 
@@ -51,6 +54,10 @@ struct NarrowBlock {
 
 template <int n>
 void narrow_forward(const NarrowBlock& block, double* own, double* y) noexcept {
+  if constexpr (n == 1) {
+    for (int i = 0; i < block.below; ++i) y[block.row[i]] -= block.value[i] * *own;
+    return;
+  }
   std::array<double, n> old;
   std::copy(own, own + n, old.begin());
   const double* t = block.value;
@@ -67,8 +74,16 @@ void narrow_forward(const NarrowBlock& block, double* own, double* y) noexcept {
   }
 }
 
+/// @param inverse_D of the block's columns @param y where they stand in L⁻¹ of the load; own may be the same
 template <int n>
-void narrow_backward(const NarrowBlock& block, double* own, const double* x) noexcept {
+void narrow_backward(const NarrowBlock& block, const double* inverse_D, const double* y, double* own,
+                     const double* x) noexcept {
+  if constexpr (n == 1) {
+    double sum = *y * *inverse_D;
+    for (int i = 0; i < block.below; ++i) sum -= block.value[i] * x[block.row[i]];
+    *own = sum;
+    return;
+  }
   std::array<Four, n> sum;
   sum.fill(Four::Zero());
   const double* column = block.value + triangle_room(n);
@@ -77,23 +92,29 @@ void narrow_backward(const NarrowBlock& block, double* own, const double* x) noe
     const Four part(x[row[0]], x[row[1]], x[row[2]], x[row[3]]);
     for (int k = 0; k < n; ++k) sum[static_cast<std::size_t>(k)] += part * Eigen::Map<const Four>(column + 4 * k);
   }
-  std::array<double, n> change;
-  for (int k = 0; k < n; ++k) change[static_cast<std::size_t>(k)] = sum[static_cast<std::size_t>(k)].sum();
-  const double* t = block.value;
-  for (int j = 1; j < n; ++j) {
-    for (int k = 0; k < j; ++k) change[static_cast<std::size_t>(k)] -= *t++ * own[j];
+  std::array<double, n> solved, known;
+  for (std::size_t k = 0; k < n; ++k) {
+    known[k] = y[k] * inverse_D[k];
+    solved[k] = known[k] - sum[k].sum();
   }
-  for (int k = 0; k < n; ++k) own[k] -= change[static_cast<std::size_t>(k)];
+  const double* t = block.value;
+  for (std::size_t j = 1; j < n; ++j) {
+    for (std::size_t k = 0; k < j; ++k) solved[k] += *t++ * known[j];
+  }
+  std::copy(solved.begin(), solved.end(), own);
 }
 
-using NarrowForward = void (*)(const NarrowBlock&, double*, double*) noexcept;
-using NarrowBackward = void (*)(const NarrowBlock&, double*, const double*) noexcept;
-constexpr std::array<NarrowForward, narrow> forward_of{narrow_forward<1>, narrow_forward<2>, narrow_forward<3>,
-                                                       narrow_forward<4>, narrow_forward<5>, narrow_forward<6>,
-                                                       narrow_forward<7>, narrow_forward<8>};
-constexpr std::array<NarrowBackward, narrow> backward_of{narrow_backward<1>, narrow_backward<2>, narrow_backward<3>,
-                                                         narrow_backward<4>, narrow_backward<5>, narrow_backward<6>,
-                                                         narrow_backward<7>, narrow_backward<8>};
+/// Calls visitor.operator()<columns>(). @pre 1 <= columns <= narrow
+template <class Visitor>
+void with_columns(int columns, Visitor&& visitor) {
+  const auto is = [&]<int n>() {
+    if (columns != n) return false;
+    visitor.template operator()<n>();
+    return true;
+  };
+  [&]<int... n>(std::integer_sequence<int, n...>) { (is.template operator()<n + 1>() || ...); }
+  (std::make_integer_sequence<int, narrow>());
+}
 
 /// sum <- sum + columns · factors, from row `begin` on, above which the columns are zero.
 template <int number>
@@ -257,14 +278,15 @@ void SparseLdlt::read(std::span<const int> few, const Vector& ordered, Vector& n
   for (int unknown : few) natural[unknown] = ordered[position(unknown)];
 }
 
-void SparseLdlt::forward(double* y, const Block& block, double* scratch) const {
+void SparseLdlt::forward(double* y, const Block& block) const {
   double* const own = y + block.first;
   if (block.columns <= narrow) {
-    forward_of[static_cast<std::size_t>(block.columns - 1)](
-        {values_.data() + block.value, rows_.data() + block.rows, block.below}, own, y);
+    const NarrowBlock numbers{values_.data() + block.value, rows_.data() + block.rows, block.below};
+    with_columns(block.columns, [&]<int n>() { narrow_forward<n>(numbers, own, y); });
     return;
   }
   const int height = in_fours(block.columns + block.below);
+  double* const scratch = work_space(y);
   Eigen::Map<Vector>(scratch, height).setZero();
   const double* const value = values_.data() + block.value;
   int k = 0;
@@ -276,16 +298,18 @@ void SparseLdlt::forward(double* y, const Block& block, double* scratch) const {
   for (int i = 0; i < block.below; ++i) y[row[i]] -= change[i];
 }
 
-void SparseLdlt::backward(double* x, const Block& block, double* scratch) const {
+void SparseLdlt::backward(const double* y, double* x, const Block& block) const {
   double* const own = x + block.first;
+  const double *const inverse_D = inverse_D_.data() + block.first, *const load = y + block.first;
   if (block.columns <= narrow) {
-    backward_of[static_cast<std::size_t>(block.columns - 1)](
-        {values_.data() + block.value, rows_.data() + block.rows, block.below}, own, x);
+    const NarrowBlock numbers{values_.data() + block.value, rows_.data() + block.rows, block.below};
+    with_columns(block.columns, [&]<int n>() { narrow_backward<n>(numbers, inverse_D, load, own, x); });
     return;
   }
   const int height = in_fours(block.columns + block.below);
   const int* const row = rows_.data() + block.rows;
-  std::copy(own, own + block.columns, scratch);
+  double* const scratch = work_space(x);
+  for (int j = 0; j < block.columns; ++j) scratch[j] = load[j] * inverse_D[j];
   double* const below = scratch + block.columns;
   for (int i = 0; i < block.below; ++i) below[i] = -x[row[i]];
   std::fill(below + block.below, scratch + height, 0.0);
@@ -295,18 +319,12 @@ void SparseLdlt::backward(double* x, const Block& block, double* scratch) const 
   for (; k < block.columns; ++k) products<1>(value + k * height, height, k & ~3, scratch, own + k);
 }
 
-void SparseLdlt::backward(const Vector& y, Vector& x, const Block& block) const {
-  for (int j = block.first; j < block.first + block.columns; ++j) x[j] = y[j] * inverse_D_[j];
-  backward(x.data(), block, work_space(x.data()));
-}
-
 void SparseLdlt::forward(double* y) const {
-  for (const Block& block : blocks_) forward(y, block, work_space(y));
+  for (const Block& block : blocks_) forward(y, block);
 }
 
 void SparseLdlt::backward(double* x) const {
-  Eigen::Map<Vector>(x, size()).array() *= inverse_D_.array();
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, work_space(x));
+  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, x, *block);
 }
 
 void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const {
@@ -318,7 +336,7 @@ void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const
     if ((own.cwiseAbs().array() < nothing).all()) {  // false for a NaN, which must reach the solution
       own.setZero();
     } else {
-      forward(y.data(), block, work_space(y.data()));
+      forward(y.data(), block);
     }
     own += known.segment(block.first, block.columns);  // no block after this one reads them
   }
@@ -326,13 +344,13 @@ void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const
 
 void SparseLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
   for (auto b = path.nodes().rbegin(); b != path.nodes().rend(); ++b) {
-    backward(y, x, blocks_[static_cast<std::size_t>(*b)]);
+    backward(y.data(), x.data(), blocks_[static_cast<std::size_t>(*b)]);
   }
 }
 
 void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
   for (std::size_t b = blocks_.size(); b-- > 0;) {
-    if (!path.contains(static_cast<int>(b))) backward(y, x, blocks_[b]);
+    if (!path.contains(static_cast<int>(b))) backward(y.data(), x.data(), blocks_[b]);
   }
 }
 
@@ -342,7 +360,7 @@ Eigen::Map<const Eigen::MatrixXd> SparseLdlt::wide(const Block& block) const {
 
 void SparseLdlt::forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const {
   if (block.columns <= narrow) {
-    for (Eigen::Index k = 0; k < y.cols(); ++k) forward(y.col(k).data(), block, scratch.data());
+    for (Eigen::Index k = 0; k < y.cols(); ++k) forward(y.col(k).data(), block);
     return;
   }
   auto own = y.middleRows(block.first, block.columns);
@@ -355,12 +373,12 @@ void SparseLdlt::forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd
 
 void SparseLdlt::backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const {
   if (block.columns <= narrow) {
-    for (Eigen::Index k = 0; k < x.cols(); ++k) backward(x.col(k).data(), block, scratch.data());
+    for (Eigen::Index k = 0; k < x.cols(); ++k) backward(x.col(k).data(), x.col(k).data(), block);
     return;
   }
   auto own = x.middleRows(block.first, block.columns);
   auto known = scratch.topLeftCorner(in_fours(block.columns + block.below), x.cols());
-  known.topRows(block.columns) = own;
+  known.topRows(block.columns) = inverse_D_.segment(block.first, block.columns).asDiagonal() * own;
   const int* const row = rows_.data() + block.rows;
   for (int i = 0; i < block.below; ++i) known.row(block.columns + i) = -x.row(row[i]);
   known.bottomRows(known.rows() - block.columns - block.below).setZero();
@@ -377,7 +395,6 @@ Eigen::MatrixXd SparseLdlt::solve_columns(const Eigen::MatrixXd& loads) const {
       x.row(position_[static_cast<std::size_t>(i)]) = loads.row(first_ + i).segment(first, count);
     }
     for (const Block& block : blocks_) forward(x, block, scratch);
-    x.topRows(size()).array().colwise() *= inverse_D_.array();
     for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, scratch);
     for (Eigen::Index i = 0; i < size(); ++i) {
       result.row(first_ + i).segment(first, count) = x.row(position_[static_cast<std::size_t>(i)]);

@@ -87,9 +87,9 @@ class SparseLdlt final : public SubstitutionFactor {
   std::vector<int> place(const EliminationTree& tree);
   void store(const Block& block, const EliminatedBlock& from);
   [[nodiscard]] double* work_space(double* ordered) const noexcept { return ordered + size() + 1; }
-  void forward(double* y, const Block& block, double* scratch) const;
-  void backward(double* x, const Block& block, double* scratch) const;
-  void backward(const Vector& y, Vector& x, const Block& block) const;
+  void forward(double* y, const Block& block) const;
+  /// @param y may be x
+  void backward(const double* y, double* x, const Block& block) const;
   /// The same for columns of y and x.
   void forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const;
   void backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const;

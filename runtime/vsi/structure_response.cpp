@@ -279,8 +279,10 @@ void StructureResponse::set_divisible(const StructureModel& structure, const Dof
 }
 
 void StructureResponse::set_entries(const Sparse& stiffness, const Sparse& damping) {
-  // The union of both patterns: a zero times one keeps an entry's place.
-  const Sparse pattern = (stiffness + damping).triangularView<Eigen::Lower>();
+  // The union of both patterns and the diagonal: a zero keeps an entry's place.
+  Sparse diagonal(dofs_, dofs_);
+  diagonal.setIdentity();
+  const Sparse pattern = (stiffness + damping + diagonal).triangularView<Eigen::Lower>();
   entry_begin_.push_back(0);
   for (int j = 0; j < pattern.outerSize(); ++j) {
     for (Sparse::InnerIterator entry(pattern, j); entry; ++entry) {
@@ -460,6 +462,25 @@ double StructureResponse::table_bytes(const StructureModel& structure, double wi
   return bytes;
 }
 
+// f <- f − K u − C v of the active unknowns.
+void StructureResponse::subtract_products(const double* u, const double* v, double* f) const noexcept {
+  const int last = static_cast<int>(active_.end());
+  const int *const begin = entry_begin_.data(), *const row = entry_row_.data();
+  const Entry* const entry = entry_.data();
+  for (int j = static_cast<int>(active_.begin); j < last; ++j) {
+    const double u_j = u[j], v_j = v[j];
+    int p = begin[j];  // of the diagonal
+    double sum = entry[p].stiffness * u_j + entry[p].damping * v_j;
+    for (++p; p < begin[j + 1] && row[p] < last; ++p) {
+      const auto [k, c] = entry[p];
+      const int i = row[p];
+      sum += k * u[i] + c * v[i];
+      f[i] -= k * u_j + c * v_j;
+    }
+    f[j] -= sum;
+  }
+}
+
 void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
                                    StructureSolution& solution) const {
   assert(load.at || load.weight == 1.0);
@@ -483,20 +504,7 @@ void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoa
   const LinearMotion& begin = motion.whole();
   predictor_.predict(active_.of(begin.displacement), active_.of(begin.velocity), active_.of(begin.acceleration),
                      active_.of(u), active_.of(v));
-  const Eigen::Index first = active_.begin, last = active_.end();
-  double* const f = solution.load.data();
-  for (Eigen::Index j = first; j < last; ++j) {
-    double sum = 0.0;
-    for (int p = entry_begin_[static_cast<std::size_t>(j)], end = entry_begin_[static_cast<std::size_t>(j + 1)];
-         p < end; ++p) {
-      const Entry& e = entry_[static_cast<std::size_t>(p)];
-      const int i = entry_row_[static_cast<std::size_t>(p)];
-      if (i >= last) continue;
-      sum += e.stiffness * u[i] + e.damping * v[i];
-      if (i != j) f[i] -= e.stiffness * u[j] + e.damping * v[j];
-    }
-    f[j] -= sum;
-  }
+  subtract_products(u.data(), v.data(), solution.load.data());
   solution.substitution.begin(*factor_, solution.load, few);
 }
 

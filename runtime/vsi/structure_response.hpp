@@ -174,6 +174,7 @@ class StructureResponse {
   [[nodiscard]] std::unique_ptr<SubstitutionFactor> accurate_sections(
       const std::shared_ptr<const SectionLayout>& layout) const;
   void set_entries(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping);
+  void subtract_products(const double* u, const double* v, double* f) const noexcept;
   /// Puts away the factor of the active unknowns, or drops it.
   void leave_factor();
   void make_factor();
@@ -194,7 +195,8 @@ class StructureResponse {
     std::size_t bytes;
   };
   std::vector<Kept> kept_;
-  /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory.
+  /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory. Every
+  /// column begins with its diagonal.
   struct Entry {
     double stiffness, damping;
   };

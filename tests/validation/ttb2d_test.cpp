@@ -28,14 +28,9 @@ namespace {
 
 using boost::property_tree::ptree;
 
-struct Case {
-  const char* folder;
-  double ms_per_step;  // that TTB-2D needed
-};
-
-std::filesystem::path folder_of(const Case& c) {
+std::filesystem::path folder_of(const std::string& name) {
   const char* external = std::getenv("RAILTAB_EXTERNAL_DATA");
-  return external ? std::filesystem::path(external) / "ttb2d" / c.folder : std::filesystem::path();
+  return external ? std::filesystem::path(external) / "ttb2d" / name : std::filesystem::path();
 }
 
 std::vector<double> list(const ptree& tree) {
@@ -128,12 +123,12 @@ struct Reference {
   std::vector<std::vector<double>> force;  // per wheelset, up
 };
 
-class Ttb2d : public ::testing::TestWithParam<Case> {
+class Ttb2d : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     folder = folder_of(GetParam());
     if (folder.empty() || !std::filesystem::exists(folder / "case.json")) {
-      GTEST_SKIP() << "RAILTAB_EXTERNAL_DATA does not name a folder with ttb2d/" << GetParam().folder;
+      GTEST_SKIP() << "RAILTAB_EXTERNAL_DATA does not name a folder with ttb2d/" << GetParam();
     }
     read_json((folder / "case.json").string(), description);
     const std::vector<std::vector<double>> bridge = read_columns(folder / "bridge.csv.gz");
@@ -241,20 +236,17 @@ class Ttb2d : public ::testing::TestWithParam<Case> {
   double time_step = 0;
 };
 
-void report(const char* name, const Case& c, double u_mid, double force, double ms, const RunSummary& s) {
+void report(const char* name, const std::string& folder, double u_mid, double force, double ms, const RunSummary& s) {
   const auto steps = static_cast<double>(s.steps);
   std::printf(
       "%s, %s: midspan %.4f %%, forces %.4f %% of the dynamic rms; %.4f ms of processor time per step, %.2f "
-      "back-substitutions; TTB-2D %.2f ms: %.0f times; wall time structure %.4f, contact %.4f, vehicle %.4f ms, "
-      "set-up %.2f s\n",
-      c.folder, name, 100 * u_mid, 100 * force, ms, static_cast<double>(s.back_substitutions) / steps, c.ms_per_step,
-      c.ms_per_step / ms, 1e3 * s.seconds_structure / steps, 1e3 * s.seconds_contact / steps,
-      1e3 * s.seconds_vehicle / steps, s.seconds_setup);
-  const std::string key =
-      std::string("ttb2d.") + std::string(c.folder).substr(0, 5) + (name[0] == 'r' ? ".rigid" : ".hertz");
+      "back-substitutions; wall time structure %.4f, contact %.4f, vehicle %.4f ms, set-up %.2f s\n",
+      folder.c_str(), name, 100 * u_mid, 100 * force, ms, static_cast<double>(s.back_substitutions) / steps,
+      1e3 * s.seconds_structure / steps, 1e3 * s.seconds_contact / steps, 1e3 * s.seconds_vehicle / steps,
+      s.seconds_setup);
+  const std::string key = "ttb2d." + folder.substr(0, 5) + (name[0] == 'r' ? ".rigid" : ".hertz");
   testing::measured(key + ".midspan", 100 * u_mid);
   testing::measured(key + ".forces", 100 * force);
-  testing::measured(key + ".times_faster", c.ms_per_step / ms);
 }
 
 TEST_P(Ttb2d, RigidWheels) {
@@ -273,9 +265,8 @@ TEST_P(Ttb2d, HertzianWheelsGiveTheSameBridge) {
   EXPECT_LT(u_mid, 1e-2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Ttb2d,
-                         ::testing::Values(Case{"case1_smooth_1veh", 4.58}, Case{"case2_rough_3veh", 9.01}),
-                         [](const auto& instance) { return std::string(instance.param.folder); });
+INSTANTIATE_TEST_SUITE_P(Cases, Ttb2d, ::testing::Values("case1_smooth_1veh", "case2_rough_3veh"),
+                         [](const auto& instance) { return instance.param; });
 
 }  // namespace
 }  // namespace railtab
