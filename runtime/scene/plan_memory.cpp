@@ -12,6 +12,7 @@
 #include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/vsi/moving_window.hpp"
+#include "railtab/runtime/vsi/operator_room.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/runtime/vsi/step.hpp"
 #include "railtab/runtime/vsi/structure_response.hpp"
@@ -96,7 +97,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   plan.grid = results.grid;
   const double train = train_bytes(model), operators = StepOperators::vehicle_bytes(model);
   plan.undivided = allocator * std::max(peak, built + train + operators + results.memory);
-  plan.most = plan.undivided + allocator * (most_operators - 1) * operators;
+  plan.most = plan.undivided + allocator * OperatorRoom::of_others(operators);
   if (!model.structure) return plan;
 
   const StructureModel& s = *model.structure;
@@ -108,14 +109,14 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const StructureResponse::Memory m = response.memory(), at_rest = StructureResponse(s).memory();
   const double table = StepOperators::largest_table(model, response, duration, integration.time_step);
   const double one = m.kept + m.low + table;
-  const double while_made = m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
+  const double while_made = m.shared + m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
   const double start = number * n * start_vectors + at_rest.kept + at_rest.setup;
   const double vectors = number * n * (step_vectors + (scene.output.energy ? energy_vectors : 0.0)) + results.memory;
   const double pieces = number * n < small ? std::min(most_pieces, number * n * start_vectors) : 0.0;
   const double common = built + train;
   const double undivided = common + pieces + vectors + operators + while_made;
   plan.undivided = allocator * std::max({peak, common + start, undivided});
-  plan.most = plan.undivided + allocator * (most_operators - 1) * (operators + one);
+  plan.most = plan.undivided + allocator * OperatorRoom::of_others(operators + one);
   plan.step_reads = 2.0 * static_cast<double>(response.factor().bytes()) + static_cast<double>(response.load_bytes());
   plan.entries_per_dof = m.low_entries / static_cast<double>(active.count);
   return plan;

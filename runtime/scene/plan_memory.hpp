@@ -12,7 +12,7 @@ namespace railtab {
 /// Memory and results of a run [bytes].
 struct PlannedMemory {
   double undivided = 0.0;        ///< most that the process occupies while no step is divided
-  double most = 0.0;             ///< where steps are divided: most_operators at once
+  double most = 0.0;             ///< where steps are divided: operators of several sizes at once, OperatorRoom
   double results = 0.0;          ///< of the results file
   double grid = 0.0;             ///< of it, the group for ParaView
   double step_reads = 0.0;       ///< what one step reads of the structure's factor and matrices

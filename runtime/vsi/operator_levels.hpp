@@ -1,13 +1,11 @@
 #pragma once
 
 #include <map>
+#include <memory>
 
 #include "railtab/runtime/vsi/step_operators.hpp"
 
 namespace railtab {
-
-/// Operators of steps of different sizes that exist at once: of the whole step and of two divided ones.
-inline constexpr int most_operators = 3;
 
 /// Operators of the steps of a model, whole and divided, made when first needed. Runs of one model in steps of one size
 /// may share them one after the other: what they hold depends on the time of a step alone.
@@ -29,7 +27,8 @@ class OperatorLevels {
   void make_room(int level);
 
   const VsiModel& model_;
-  double alpha_, time_step_;  // [s]
+  double alpha_, time_step_;                      // [s]
+  std::shared_ptr<const StepMatrices> matrices_;  // made when first needed; not where the model has a store
   std::map<int, StepOperators> operators_;
 };
 

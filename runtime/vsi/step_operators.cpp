@@ -1,6 +1,7 @@
 #include "railtab/runtime/vsi/step_operators.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace railtab {
 
@@ -13,7 +14,7 @@ constexpr double compliance_ahead = 10.0;  // m: covered before the train
 
 }  // namespace
 
-StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
+StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht, std::shared_ptr<const StepMatrices> matrices)
     : scheme(hht),
       systems(separate_systems(model.vehicle)),
       vehicle_damping(model.vehicle_damping(model.contact.speed)),
@@ -25,8 +26,12 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht)
   respond_to_elements(model);
   if (!model.structure) return;
   const DofRange active{0, model.window ? 0 : model.structure->dofs()};  // a window is placed by update_for_time()
-  structure = model.store ? model.store->of_steps(model.structure, hht, active)
-                          : std::make_shared<StructureResponse>(*model.structure, hht, active);
+  if (model.store) {
+    structure = model.store->of_steps(model.structure, hht, active);
+  } else {
+    if (!matrices) matrices = std::make_shared<StepMatrices>(*model.structure, !model.window);
+    structure = std::make_shared<StructureResponse>(std::move(matrices), hht, active);
+  }
 }
 
 void StepOperators::respond_to_elements(const VsiModel& model) {
@@ -35,6 +40,10 @@ void StepOperators::respond_to_elements(const VsiModel& model) {
   for (const SeparateSystem& system : systems) {
     elements.emplace_back(model.vehicle, system, vehicle.inverse(), scheme.load_weight());
   }
+}
+
+double StepOperators::bytes(const VsiModel& model) const {
+  return vehicle_bytes(model) + (structure ? static_cast<double>(structure->bytes()) : 0.0);
 }
 
 double StepOperators::vehicle_bytes(const VsiModel& model) {
@@ -49,8 +58,8 @@ double StepOperators::largest_table(const VsiModel& model, const StructureRespon
   for (int i = 0; i <= looks; ++i) {
     const double time = duration * i / looks;
     const double rear = model.wheelset_x(model.wheelsets() - 1, time - time_step);
-    largest = std::max(largest, response.table_bytes(*model.structure, compliance_window, rear,
-                                                     model.wheelset_x(0, time) + compliance_ahead));
+    largest =
+        std::max(largest, response.table_bytes(compliance_window, rear, model.wheelset_x(0, time) + compliance_ahead));
   }
   return largest;
 }
@@ -70,7 +79,7 @@ void StepOperators::update_for_time(const VsiModel& model, double time, const Do
   // A step that is repeated as halves looks back by at most one step.
   covered_from_ = model.wheelset_x(model.wheelsets() - 1, time - scheme.time_step);
   covered_to_ = front + compliance_ahead;
-  structure->tabulate_compliance(*model.structure, compliance_window, covered_from_, covered_to_);
+  structure->tabulate_compliance(compliance_window, covered_from_, covered_to_);
 }
 
 }  // namespace railtab

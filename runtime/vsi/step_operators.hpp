@@ -22,13 +22,16 @@ class StepOperators {
   std::shared_ptr<StructureResponse> structure;  ///< null on rigid track
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
-  StepOperators(const VsiModel& model, const HhtScheme& hht);
+  /// @param matrices of the model's structure; null on rigid track, and where the model has a store
+  StepOperators(const VsiModel& model, const HhtScheme& hht, std::shared_ptr<const StepMatrices> matrices = nullptr);
 
   /// For a step that ends at `time`: moves the table of the rails' compliance with the train, so that it covers the
   /// train up to there and some way ahead, takes the vehicle's gyroscopic terms at the speed there, and activates the
   /// degrees of freedom in `active`.
   void update_for_time(const VsiModel& model, double time, const DofRange& active);
 
+  /// What the operators take now [bytes].
+  [[nodiscard]] double bytes(const VsiModel& model) const;
   /// Memory that the operators keep for a vehicle [bytes].
   [[nodiscard]] static double vehicle_bytes(const VsiModel& model);
   /// The largest table of compliances of a run of `duration` [s] [bytes]. @param response of the model's structure

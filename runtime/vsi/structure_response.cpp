@@ -23,24 +23,6 @@ constexpr double most_kept = 64.0 * 1024.0 * 1024.0;  // bytes, of compliances a
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-void require_finite(const Sparse& matrix, std::string_view name) {
-  for (int column = 0; column < matrix.outerSize(); ++column) {
-    for (Sparse::InnerIterator entry(matrix, column); entry; ++entry) {
-      if (!std::isfinite(entry.value())) {
-        throw input_error(
-            fmt::format("{} matrix of the structure, row {}, column {}", name, entry.row() + 1, column + 1),
-            fmt::format("{}", entry.value()), "a finite number");
-      }
-    }
-  }
-}
-
-void require_finite(const StructureModel& structure) {
-  require_finite(structure.mass, "mass");
-  require_finite(structure.damping, "damping");
-  require_finite(structure.stiffness, "stiffness");
-}
-
 constexpr const char* not_positive_definite =
     "the structure's effective matrix is not positive definite: check supports and stiffnesses";
 
@@ -180,130 +162,31 @@ struct StructureResponse::FewEntries {
   }
 };
 
-struct StructureResponse::Divisible {
-  MirrorPairs pairs;
-  UnknownPlaces places;
-  Sparse effective, stiffness, damping;  // by sums and differences; the latter two empty at rest
-};
-
-namespace {
-
-// The unknowns of both rails at one node.
-MirrorPairs rail_pairs(const StructureModel& structure) {
-  MirrorPairs pairs;
-  const auto& [left, right] = structure.rail;
-  const auto join = [&](int l, int r) {
-    if (l != held && r != held) pairs.push_back({std::min(l, r), std::max(l, r)});
-  };
-  for (std::size_t i = 0; i < std::min(left.dof.size(), right.dof.size()); ++i) {
-    for (std::size_t k = 0; k < 6; ++k) join(left.dof[i][k], right.dof[i][k]);
-    if (!left.twist_rate.empty() && !right.twist_rate.empty()) join(left.twist_rate[i], right.twist_rate[i]);
-  }
-  return pairs;
-}
-
-// Whether a symmetric structure carries both rails: its effective matrix then does not couple the symmetric
-// combinations of the rails (sums of z and pitch, differences of y, roll, yaw and the twist's rate) with the others.
-bool rails_mirror_each_other(const StructureModel& structure, const MirrorPairs& pairs, const Sparse& effective) {
-  const auto& [left, right] = structure.rail;
-  if (pairs.empty() || left.x.size() != right.x.size()) return false;
-  for (std::size_t node = 0; node + 1 < left.x.size(); ++node) {
-    if (!same_element(left, right, node)) return false;
-  }
-  enum : char { unknown, symmetric, antisymmetric };
-  std::vector<char> kind(static_cast<std::size_t>(effective.rows()), unknown);
-  std::vector<int> reached;
-  for (std::size_t node = 0; node < left.x.size(); ++node) {
-    const DofIndices l = head_dofs(left, node), r = head_dofs(right, node);
-    for (std::size_t k = 0; k < l.size(); ++k) {
-      if ((l[k] == held) != (r[k] == held)) return false;
-      if (l[k] == held) continue;
-      const bool even = k == 2 || k == 4;  // z, pitch
-      const auto [sum, difference] = std::minmax(l[k], r[k]);
-      reached.push_back(even ? sum : difference);
-      kind[static_cast<std::size_t>(reached.back())] = symmetric;
-      kind[static_cast<std::size_t>(even ? difference : sum)] = antisymmetric;
-    }
-  }
-  while (!reached.empty()) {
-    const int column = reached.back();
-    reached.pop_back();
-    for (Sparse::InnerIterator entry(effective, column); entry; ++entry) {
-      char& other = kind[static_cast<std::size_t>(entry.row())];
-      if (other == antisymmetric) return false;
-      if (other == unknown) reached.push_back(static_cast<int>(entry.row()));
-      other = symmetric;
-    }
-  }
-  return true;
-}
-
-}  // namespace
-
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme)
     : StructureResponse(structure, scheme, {0, structure.dofs()}) {}
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active)
-    : scheme_(scheme), node_(structure.dof_node), dofs_(structure.dofs()) {
-  require_finite(structure);
-  effective_ = effective_matrix(scheme, structure.mass, structure.damping, structure.stiffness);
-  set_divisible(structure, active);
-  if (divisible_) {
-    divisible_->stiffness = by_sums_and_differences(structure.stiffness, divisible_->pairs);
-    divisible_->damping = by_sums_and_differences(structure.damping, divisible_->pairs);
-    rails_mirror_ = rails_mirror_each_other(structure, divisible_->pairs, divisible_->effective);
-  }
-  if (!divisible_) set_entries(structure.stiffness, structure.damping);
+    : StructureResponse(std::make_shared<const StepMatrices>(structure, active.count == structure.dofs()), scheme,
+                        active) {}
+
+StructureResponse::StructureResponse(std::shared_ptr<const StepMatrices> matrices, const HhtScheme& scheme,
+                                     const DofRange& active)
+    : scheme_(scheme),
+      structure_(matrices->structure()),
+      matrices_(std::move(matrices)),
+      divisible_(matrices_->divisible()),
+      dofs_(structure_.dofs()),
+      rails_mirror_(matrices_->rails_mirror()) {
   if (active.count > 0) activate(active);
 }
 
-StructureResponse::StructureResponse(const StructureModel& structure) : at_rest_(true), dofs_(structure.dofs()) {
+StructureResponse::StructureResponse(const StructureModel& structure)
+    : structure_(structure), at_rest_(true), dofs_(structure.dofs()) {
   require_finite(structure);
-  effective_ = structure.stiffness;
   activate({0, dofs_});
 }
 
 StructureResponse::~StructureResponse() = default;
-
-void StructureResponse::set_divisible(const StructureModel& structure, const DofRange& active) {
-  const auto without_line = std::find(structure.dof_line.begin(), structure.dof_line.end(), -1);
-  if (structure.dof_line.empty() || (active.count == dofs_ && without_line != structure.dof_line.end())) return;
-  divisible_ = std::make_unique<Divisible>();
-  divisible_->pairs = rail_pairs(structure);
-  divisible_->places = {structure.dof_x, structure.dof_line};
-  divisible_->effective = by_sums_and_differences(effective_, divisible_->pairs);
-  if (divisible_->effective.nonZeros() >= effective_.nonZeros()) {
-    divisible_->pairs.clear();
-    divisible_->effective = effective_;
-  }
-}
-
-void StructureResponse::set_entries(const Sparse& stiffness, const Sparse& damping) {
-  // The union of both patterns and the diagonal: a zero keeps an entry's place.
-  Sparse diagonal(dofs_, dofs_);
-  diagonal.setIdentity();
-  const Sparse pattern = (stiffness + damping + diagonal).triangularView<Eigen::Lower>();
-  entry_begin_.push_back(0);
-  for (int j = 0; j < pattern.outerSize(); ++j) {
-    for (Sparse::InnerIterator entry(pattern, j); entry; ++entry) {
-      entry_row_.push_back(static_cast<int>(entry.row()));
-      entry_.push_back({0.0, 0.0});
-    }
-    entry_begin_.push_back(static_cast<int>(entry_.size()));
-  }
-  const auto fill = [&](const Sparse& matrix, double Entry::*value) {
-    for (int j = 0; j < matrix.outerSize(); ++j) {
-      int p = entry_begin_[static_cast<std::size_t>(j)];
-      for (Sparse::InnerIterator entry(matrix, j); entry; ++entry) {
-        if (entry.row() < j) continue;
-        while (entry_row_[static_cast<std::size_t>(p)] != entry.row()) ++p;
-        entry_[static_cast<std::size_t>(p)].*value = entry.value();
-      }
-    }
-  };
-  fill(stiffness, &Entry::stiffness);
-  fill(damping, &Entry::damping);
-}
 
 void StructureResponse::activate(const DofRange& dofs) {
   if (factor_ && active_ == dofs) return;
@@ -337,22 +220,27 @@ void StructureResponse::make_factor() {
   const DofRange& dofs = active_;
   if (divisible_) {
     bool inaccurate = false;
-    if (auto layout = divide(divisible_->effective, divisible_->places, divisible_->pairs, dofs)) {
+    const Sparse effective = matrices_->divided(scheme_, dofs);
+    if (auto layout = divide(effective, matrices_->places(), matrices_->pairs(), dofs)) {
       const auto shared = std::make_shared<const SectionLayout>(std::move(*layout));
-      if (auto factor = accurate_sections(shared)) {
-        product_ = std::make_unique<SectionedProduct>(divisible_->stiffness, divisible_->damping, shared);
+      if (auto factor = accurate_sections(effective, shared)) {
+        product_ = std::make_unique<SectionedProduct>(matrices_->stiffness(), matrices_->damping(), shared);
         factor_ = std::move(factor);
         return;
       }
       inaccurate = true;
     }
-    if (entry_begin_.empty()) {
-      const auto back = [&](const Sparse& matrix) { return by_sums_and_differences(matrix, divisible_->pairs); };
-      set_entries(back(divisible_->stiffness), back(divisible_->damping));
-    }
-    if (inaccurate) divisible_.reset();  // nor would sections of another window be accurate
+    if (own_product_.empty()) own_product_ = PairedProduct(structure_.stiffness, structure_.damping);
+    if (inaccurate) divisible_ = false;  // nor would sections of another window be accurate
   }
-  factor_ = std::make_unique<SparseLdlt>(effective_, dofs, not_positive_definite, order_of(dofs), node_);
+  factor_ = natural_factor(dofs);
+}
+
+std::unique_ptr<SparseLdlt> StructureResponse::natural_factor(const DofRange& dofs) const {
+  const auto make = [&](const Sparse& matrix) {
+    return std::make_unique<SparseLdlt>(matrix, dofs, not_positive_definite, order_of(dofs), structure_.dof_node);
+  };
+  return at_rest_ ? make(structure_.stiffness) : make(effective_matrix(structure_, scheme_, dofs));
 }
 
 // The rounding of the sections' factor to single precision acts as an added mass of either sign, up to 6e-8 of a
@@ -360,67 +248,133 @@ void StructureResponse::make_factor() {
 // own mass. It shows in a translation, which bends no element: where that is off by 1e-3, the motions of a deck under a
 // train are off by some 1e-5.
 std::unique_ptr<SubstitutionFactor> StructureResponse::accurate_sections(
-    const std::shared_ptr<const SectionLayout>& layout) const {
+    const Sparse& effective, const std::shared_ptr<const SectionLayout>& layout) const {
   constexpr double most = 1e-3;  // of the translation
   constexpr int translations = 3;
   std::unique_ptr<SubstitutionFactor> factor;
   try {
-    factor = std::make_unique<SectionedLdlt>(divisible_->effective, layout, not_positive_definite);
+    factor = std::make_unique<SectionedLdlt>(effective, layout, not_positive_definite);
   } catch (const ComputationError&) {
     return nullptr;  // by the rounding, or the factor of the whole says so
   }
-  Eigen::VectorXd moved = Eigen::VectorXd::Zero(dofs_);
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(dofs_), load = moved;
   for (Eigen::Index i = active_.begin; i < active_.end(); ++i) {
-    if (divisible_->places.line[static_cast<std::size_t>(i)] % lines_per_node < translations) moved[i] = 1.0;
+    if (structure_.dof_line[static_cast<std::size_t>(i)] % lines_per_node < translations) moved[i] = 1.0;
   }
-  const Eigen::VectorXd solution = factor->solve(effective_ * moved);
+  const auto add = [&](const Sparse& matrix, double weight) {
+    visit_entries(matrix, active_,
+                  [&](Eigen::Index i, Eigen::Index j, double value) { load[i] += weight * value * moved[j]; });
+  };
+  add(structure_.mass, scheme_.acceleration_rate());
+  add(structure_.damping, scheme_.load_weight() * scheme_.velocity_rate());
+  add(structure_.stiffness, scheme_.load_weight());
+  const Eigen::VectorXd solution = factor->solve(load);
   for (Eigen::Index i = active_.begin; i < active_.end(); ++i) {
     if (moved[i] != 0.0 && !(std::abs(solution[i] - 1.0) < most)) return nullptr;  // a NaN, too
   }
   return factor;
 }
 
-// The whole's factor serves the compliances, too, whose paths should be short; one at rest or of a window soon goes.
+// The factor of all unknowns serves the compliances, too, and so do those of stretches: their paths should be short.
+// One at rest or of a window soon goes.
 EliminationOrder StructureResponse::order_of(const DofRange& dofs) const noexcept {
-  return dofs.count == dofs_ && !at_rest_ ? EliminationOrder::nested_dissection : EliminationOrder::minimum_degree;
+  return !at_rest_ && (dofs.count == dofs_ || dofs != active_) ? EliminationOrder::nested_dissection
+                                                               : EliminationOrder::minimum_degree;
 }
 
 bool StructureResponse::factor_is_whole() const noexcept { return factor_ && !product_ && active_.count == dofs_; }
 
-const SubstitutionFactor& StructureResponse::whole_factor() {
+namespace {
+
+constexpr double stretch_length = 1000.0;  // m
+constexpr double stretch_margin = 50.0;    // m: what happens so far away does not reach a rail head within a step
+
+}  // namespace
+
+// A line of less than two stretches is one: all unknowns.
+int StructureResponse::stretches() const noexcept {
+  const auto& x = structure_.dof_x;
+  return x.empty() ? 1 : std::max(1, static_cast<int>((x.back() - x.front()) / stretch_length));
+}
+
+int StructureResponse::stretch_at(double x) const noexcept {
+  const int last = stretches() - 1;
+  if (last == 0) return 0;
+  return std::clamp(static_cast<int>((x - structure_.dof_x.front()) / stretch_length), 0, last);
+}
+
+DofRange StructureResponse::dofs_of_stretch(int stretch, double reach) const {
+  const auto& x = structure_.dof_x;
+  const int last = stretches() - 1;
+  if (last == 0) return {0, dofs_};
+  const double from = x.front() + stretch * stretch_length, margin = stretch_margin + reach;
+  const auto begin = stretch == 0 ? x.begin() : std::lower_bound(x.begin(), x.end(), from - margin);
+  const auto end = stretch == last ? x.end() : std::upper_bound(x.begin(), x.end(), from + stretch_length + margin);
+  return {begin - x.begin(), end - begin};
+}
+
+const SubstitutionFactor& StructureResponse::factor_near(double x, double reach) {
   if (factor_is_whole()) return *factor_;
-  const DofRange all{0, dofs_};
-  if (!whole_) whole_ = std::make_unique<SparseLdlt>(effective_, all, not_positive_definite, order_of(all), node_);
-  return *whole_;
+  const int stretch = stretch_at(x);
+  if (!near_ || stretch != near_stretch_) {
+    near_.reset();  // not two at a time
+    near_ = natural_factor(dofs_of_stretch(stretch, reach));
+    near_stretch_ = stretch;
+  }
+  return *near_;
+}
+
+std::size_t StructureResponse::bytes() const noexcept {
+  std::size_t sum = own_product_.bytes() + (factor_ ? factor_->stored_bytes() : 0) +
+                    (product_ ? product_->bytes() : 0) + (near_ ? near_->stored_bytes() : 0);
+  for (const Kept& kept : kept_) sum += kept.bytes;
+  for (const std::vector<Column>& columns : column_) {
+    sum += columns.capacity() * sizeof(Column);
+    for (const Column& column : columns) {
+      for (const std::vector<Block>& rows : column.rows) sum += rows.capacity() * sizeof(Block);
+    }
+  }
+  return sum;
 }
 
 StructureResponse::Memory StructureResponse::memory() const {
   constexpr double entry = sizeof(double) + sizeof(int);
-  const auto n = static_cast<double>(dofs_), nonzeros = static_cast<double>(effective_.nonZeros());
+  const auto nonzeros = [&](const DofRange& dofs) {
+    return static_cast<double>(
+        (at_rest_ ? structure_.stiffness : effective_matrix(structure_, scheme_, dofs)).nonZeros());
+  };
+  const auto n = static_cast<double>(dofs_);
   Memory memory;
-  memory.kept = entry * nonzeros + sizeof(int) * n + static_cast<double>(factor_->stored_bytes()) +
-                static_cast<double>(load_bytes()) + sizeof(int) * n;
-  if (divisible_) {
-    for (const Sparse* matrix : {&divisible_->effective, &divisible_->stiffness, &divisible_->damping}) {
-      memory.kept += entry * static_cast<double>(matrix->nonZeros()) + sizeof(int) * n;
-    }
-  }
-  const SparseLdlt::Memory whole = SparseLdlt::memory(effective_, {0, dofs_}, order_of({0, dofs_}), node_);
-  memory.low_entries = static_cast<double>(whole.entries);
+  memory.shared = matrices_ ? static_cast<double>(matrices_->bytes()) : 0.0;
+  memory.kept = static_cast<double>(factor_->stored_bytes() + own_product_.bytes()) +
+                static_cast<double>(product_ ? product_->bytes() : 0);
   memory.low = 6.0 * sizeof(double) * n;  // vectors of a substitution
+  double low_stored = 0.0, of_stretch = 0.0, whole_made = 0.0;
+  for (int stretch = 0; stretch < stretches(); ++stretch) {
+    const DofRange dofs = dofs_of_stretch(stretch, 0.0);
+    const Sparse effective = at_rest_ ? structure_.stiffness : effective_matrix(structure_, scheme_, dofs);
+    const SparseLdlt::Memory of = SparseLdlt::memory(effective, dofs, order_of(dofs), structure_.dof_node);
+    memory.low_entries += static_cast<double>(of.entries);
+    whole_made = std::max(whole_made, static_cast<double>(of.made));
+    low_stored = std::max(low_stored, static_cast<double>(of.stored));
+    constexpr double room = 2.0;  // that a sum of sparse matrices may take for its entries
+    of_stretch = std::max(of_stretch, room * entry * static_cast<double>(effective.nonZeros()) + sizeof(int) * n);
+  }
   if (factor_is_whole()) {
-    memory.setup = static_cast<double>(whole.made);
+    memory.setup = whole_made + (at_rest_ ? 0.0 : of_stretch);
     return memory;
   }
-  memory.low += static_cast<double>(whole.stored);
-  memory.low_setup = static_cast<double>(whole.made);
+  memory.low += low_stored;
+  memory.low_setup = whole_made + of_stretch;
+  const double of_active = entry * nonzeros(active_) + sizeof(int) * n;
   if (product_) {
-    // An estimate of what the division into sections works on: copies of the pattern, or its entries and the factor's,
-    // twice as wide until they are stored, beside the factor.
-    const double ordering = 3.5 * entry * nonzeros;
-    memory.setup = std::max(ordering, entry * nonzeros + 2.0 * static_cast<double>(factor_->bytes()));
+    // An estimate of what the division into sections works on beside the matrix: copies of the pattern, or its entries
+    // and the factor's, twice as wide until they are stored, beside the factor.
+    memory.setup = of_active + std::max(3.5 * of_active, of_active + 2.0 * static_cast<double>(factor_->bytes()));
   } else {
-    memory.setup = static_cast<double>(SparseLdlt::memory(effective_, active_, order_of(active_), node_).made);
+    const Sparse effective = effective_matrix(structure_, scheme_, active_);
+    memory.setup = of_active + static_cast<double>(
+                                   SparseLdlt::memory(effective, active_, order_of(active_), structure_.dof_node).made);
   }
   return memory;
 }
@@ -448,37 +402,18 @@ std::size_t most_nodes(const RailLine& rail, double reach) {
 
 }  // namespace
 
-double StructureResponse::table_bytes(const StructureModel& structure, double window, double from, double to) const {
+double StructureResponse::table_bytes(double window, double from, double to) const {
   double bytes = 0.0;
-  for (const RailLine& rail : std::span(structure.rail).first(tabulated_rails())) {
+  for (const RailLine& rail : std::span(structure_.rail).first(tabulated_rails())) {
     const double longest = longest_element(rail), reach = reach_of(rail, window);
     double blocks = 0.0;
-    for (const RailLine& other : structure.rail) blocks += static_cast<double>(most_nodes(other, reach));
+    for (const RailLine& other : structure_.rail) blocks += static_cast<double>(most_nodes(other, reach));
     const auto columns =
         std::count_if(rail.x.begin(), rail.x.end(), [&](double x) { return x >= from - longest && x <= to + longest; });
     bytes +=
         static_cast<double>(rail.x.size()) * sizeof(Column) + static_cast<double>(columns) * blocks * sizeof(Block);
   }
   return bytes;
-}
-
-// f <- f − K u − C v of the active unknowns.
-void StructureResponse::subtract_products(const double* u, const double* v, double* f) const noexcept {
-  const int last = static_cast<int>(active_.end());
-  const int *const begin = entry_begin_.data(), *const row = entry_row_.data();
-  const Entry* const entry = entry_.data();
-  for (int j = static_cast<int>(active_.begin); j < last; ++j) {
-    const double u_j = u[j], v_j = v[j];
-    int p = begin[j];  // of the diagonal
-    double sum = entry[p].stiffness * u_j + entry[p].damping * v_j;
-    for (++p; p < begin[j + 1] && row[p] < last; ++p) {
-      const auto [k, c] = entry[p];
-      const int i = row[p];
-      sum += k * u[i] + c * v[i];
-      f[i] -= k * u_j + c * v_j;
-    }
-    f[j] -= sum;
-  }
 }
 
 void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoad& load, const LoadedUnknowns& few,
@@ -504,7 +439,7 @@ void StructureResponse::begin_step(const StructureMotion& motion, const KnownLoa
   const LinearMotion& begin = motion.whole();
   predictor_.predict(active_.of(begin.displacement), active_.of(begin.velocity), active_.of(begin.acceleration),
                      active_.of(u), active_.of(v));
-  subtract_products(u.data(), v.data(), solution.load.data());
+  paired_product().subtract(u.data(), v.data(), active_, solution.load.data());
   solution.substitution.begin(*factor_, solution.load, few);
 }
 
@@ -529,20 +464,20 @@ Eigen::VectorXd StructureResponse::increment(const LinearMotion& motion, const E
 }
 
 std::size_t StructureResponse::load_bytes() const noexcept {
-  return product_ ? product_->bytes() : entry_.size() * (sizeof(Entry) + sizeof(int));
+  return product_ ? product_->bytes() : paired_product().bytes();
 }
 
-StructureResponse::Column StructureResponse::column_of(const StructureModel& structure, double reach, std::size_t side,
-                                                       std::size_t node, const std::array<std::size_t, 2>& room) {
-  const SubstitutionFactor& factor = whole_factor();
+StructureResponse::Column StructureResponse::column_of(double reach, std::size_t side, std::size_t node,
+                                                       const std::array<std::size_t, 2>& room) {
+  const RailLine& rail = structure_.rail[side];
+  const SubstitutionFactor& factor = factor_near(rail.x[node], reach);
   FewEntries& s = *few_;
-  const RailLine& rail = structure.rail[side];
   Column column;
   std::vector<int> involved;
   const DofIndices of_node = head_dofs(rail, node);
   append_free(of_node, involved);
   for (std::size_t other = 0; other < 2; ++other) {
-    const RailLine& to = structure.rail[other];
+    const RailLine& to = structure_.rail[other];
     const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - reach) - to.x.begin();
     const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + reach) - to.x.begin();
     column.first[other] = static_cast<int>(begin);
@@ -560,7 +495,7 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
     for (std::size_t other = 0; other < 2; ++other) {
       const auto first = static_cast<std::size_t>(column.first[other]);
       for (std::size_t n = 0; n < column.rows[other].size(); ++n) {
-        const DofIndices dofs = head_dofs(structure.rail[other], first + n);
+        const DofIndices dofs = head_dofs(structure_.rail[other], first + n);
         for (std::size_t k = 0; k < 6; ++k) {
           if (dofs[k] == held) continue;
           column.rows[other][n](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(load)) = moved[dofs[k]];
@@ -571,13 +506,13 @@ StructureResponse::Column StructureResponse::column_of(const StructureModel& str
   return column;
 }
 
-void StructureResponse::tabulate_compliance(const StructureModel& structure, double window, double from, double to) {
+void StructureResponse::tabulate_compliance(double window, double from, double to) {
   if (!few_) few_ = std::make_unique<FewEntries>(dofs_);
-  const RailLine& line = structure.rail[0];
-  const bool keeps = keeps_ && table_bytes(structure, window, line.x.front(), line.x.back()) <= most_kept;
+  const RailLine& line = structure_.rail[0];
+  const bool keeps = keeps_ && table_bytes(window, line.x.front(), line.x.back()) <= most_kept;
   const auto visit = [&](auto&& visitor) {
     for (std::size_t side = 0; side < tabulated_rails(); ++side) {
-      const RailLine& rail = structure.rail[side];
+      const RailLine& rail = structure_.rail[side];
       const double longest = longest_element(rail);
       for (std::size_t node = 0; node < rail.x.size(); ++node) {
         visitor(side, node, rail.x[node] >= from - longest && rail.x[node] <= to + longest);
@@ -586,18 +521,18 @@ void StructureResponse::tabulate_compliance(const StructureModel& structure, dou
   };
   // New columns take the place of those that are dropped before: all have the room of the largest.
   visit([&](std::size_t side, std::size_t node, bool covered) {
-    column_[side].resize(structure.rail[side].x.size());
+    column_[side].resize(structure_.rail[side].x.size());
     if (!covered && !keeps) column_[side][node] = {};
   });
   std::array<double, 2> reach;
   std::array<std::array<std::size_t, 2>, 2> room;
   for (std::size_t side = 0; side < 2; ++side) {
-    reach[side] = reach_of(structure.rail[side], window);
-    for (std::size_t other = 0; other < 2; ++other) room[side][other] = most_nodes(structure.rail[other], reach[side]);
+    reach[side] = reach_of(structure_.rail[side], window);
+    for (std::size_t other = 0; other < 2; ++other) room[side][other] = most_nodes(structure_.rail[other], reach[side]);
   }
   visit([&](std::size_t side, std::size_t node, bool covered) {
     if (!covered || !column_[side][node].rows[side].empty()) return;
-    column_[side][node] = column_of(structure, reach[side], side, node, room[side]);
+    column_[side][node] = column_of(reach[side], side, node, room[side]);
   });
 }
 

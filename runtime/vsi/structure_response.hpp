@@ -8,8 +8,11 @@
 
 #include "railtab/runtime/algebra/divided_substitution.hpp"
 #include "railtab/runtime/algebra/elimination_order.hpp"
+#include "railtab/runtime/algebra/paired_product.hpp"
 #include "railtab/runtime/algebra/sectioned_product.hpp"
+#include "railtab/runtime/algebra/sparse_ldlt.hpp"
 #include "railtab/runtime/structure/structure_model.hpp"
+#include "railtab/runtime/vsi/step_matrices.hpp"
 #include "railtab/runtime/vsi/structure_motion.hpp"
 
 namespace railtab {
@@ -75,11 +78,14 @@ struct StructureSolution {
 /// unknowns. Long tracks and bridges are factored in sections side by side, anything else as a whole.
 class StructureResponse {
  public:
+  /// @param structure outlives this
   /// @throws InputError naming the matrix and the entry that is not finite; ComputationError where the effective matrix
   ///         is not positive definite.
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
   /// @param active the unknowns that take part; none: there is no factor until activate()
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active);
+  /// Likewise, of matrices that steps of other sizes share.
+  StructureResponse(std::shared_ptr<const StepMatrices> matrices, const HhtScheme& scheme, const DofRange& active);
   /// At rest: K̄ = K, factored as a whole.
   explicit StructureResponse(const StructureModel& structure);
   ~StructureResponse();
@@ -118,22 +124,25 @@ class StructureResponse {
 
   /// Memory of a run's operator [bytes]. Those of compliances are counted, not made.
   struct Memory {
-    double kept = 0.0;   ///< matrices, factor and what begin_step() reads
-    double setup = 0.0;  ///< besides that while the factor is made
-    double low = 0.0;    ///< the factor that compliances come from, with its solver
+    double shared = 0.0;  ///< matrices, once for steps of all sizes
+    double kept = 0.0;    ///< factor and what begin_step() reads besides
+    double setup = 0.0;   ///< besides that while the factor is made
+    double low = 0.0;     ///< the factor that compliances come from, with its solver
     double low_setup = 0.0;
     double low_entries = 0.0;
   };
   [[nodiscard]] Memory memory() const;
+  /// What there is now of factors, products and compliances [bytes].
+  [[nodiscard]] std::size_t bytes() const noexcept;
   /// Of a table of compliances with the train between positions `from` and `to` [bytes].
-  [[nodiscard]] double table_bytes(const StructureModel& structure, double window, double from, double to) const;
+  [[nodiscard]] double table_bytes(double window, double from, double to) const;
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& load) const { return factor_->solve(load); }
 
   /// Make the table of node-by-node compliances cover loads on the rails between positions `from` and `to` [m], coupled
   /// within `window` [m] on either side (at least one element). What it has already is kept, what lies outside is
   /// dropped: a moving train takes its table along, at a cost that does not depend on the track's length.
-  void tabulate_compliance(const StructureModel& structure, double window, double from, double to);
+  void tabulate_compliance(double window, double from, double to);
   /// For trains that will run there again, from now on nothing is dropped from that table, and factors of other active
   /// unknowns wait for activate(), as far as either takes no more than 64 MiB.
   void keep_for_later_runs() noexcept { keeps_ = true; }
@@ -164,26 +173,24 @@ class StructureResponse {
   template <class Visitor>
   void visit_blocks(const RailContact& i, const RailContact& j, Visitor&& visitor) const noexcept;
   /// @param reach distance to the outermost nodes of the column [m] @param room of the column, blocks per rail
-  [[nodiscard]] Column column_of(const StructureModel& structure, double reach, std::size_t side, std::size_t node,
+  [[nodiscard]] Column column_of(double reach, std::size_t side, std::size_t node,
                                  const std::array<std::size_t, 2>& room);
 
-  /// Matrices by sums and differences of the rails, for a division into sections.
-  struct Divisible;
-  void set_divisible(const StructureModel& structure, const DofRange& active);
+  using Sparse = StepMatrices::Sparse;
+  /// Of the effective matrix as it is.
+  [[nodiscard]] std::unique_ptr<SparseLdlt> natural_factor(const DofRange& dofs) const;
   /// The factor in sections of the active unknowns; null where its rounding would show.
   [[nodiscard]] std::unique_ptr<SubstitutionFactor> accurate_sections(
-      const std::shared_ptr<const SectionLayout>& layout) const;
-  void set_entries(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& damping);
-  void subtract_products(const double* u, const double* v, double* f) const noexcept;
+      const Sparse& effective, const std::shared_ptr<const SectionLayout>& layout) const;
   /// Puts away the factor of the active unknowns, or drops it.
   void leave_factor();
   void make_factor();
 
   HhtScheme scheme_{};
   WeightedPredictor predictor_{scheme_};
-  Eigen::SparseMatrix<double> effective_;  ///< K̄
-  /// Null where the unknowns have no lines, or a factor in sections was not accurate.
-  std::unique_ptr<Divisible> divisible_;
+  const StructureModel& structure_;
+  std::shared_ptr<const StepMatrices> matrices_;  ///< null at rest
+  bool divisible_ = false;                        ///< not, either, where a factor in sections was not accurate
   std::unique_ptr<SubstitutionFactor> factor_;
   std::unique_ptr<SectionedProduct> product_;  ///< null: not in sections
   DofRange active_;
@@ -195,22 +202,24 @@ class StructureResponse {
     std::size_t bytes;
   };
   std::vector<Kept> kept_;
-  /// Lower triangles of K and C, entry by entry beside each other: both products in one pass over the memory. Every
-  /// column begins with its diagonal.
-  struct Entry {
-    double stiffness, damping;
-  };
-  std::vector<Entry> entry_;
-  std::vector<int> entry_row_, entry_begin_;
+  PairedProduct own_product_;  ///< where the matrices have none and there are no sections
+  [[nodiscard]] const PairedProduct& paired_product() const noexcept {
+    return own_product_.empty() ? matrices_->product() : own_product_;
+  }
   [[nodiscard]] EliminationOrder order_of(const DofRange& dofs) const noexcept;
   [[nodiscard]] bool factor_is_whole() const noexcept;
-  /// Of all unknowns, for few entries of solutions: that of the steps, or one of its own.
-  [[nodiscard]] const SubstitutionFactor& whole_factor();
-  std::unique_ptr<SubstitutionFactor> whole_;  ///< made when first needed
+  /// Compliances come from the factor of the steps where that is of all unknowns, else from one of the stretch of line
+  /// that a node stands on, with some track before and behind it: what a compliance is to the last bit depends on the
+  /// place alone.
+  [[nodiscard]] const SubstitutionFactor& factor_near(double x, double reach);
+  [[nodiscard]] int stretches() const noexcept;
+  [[nodiscard]] int stretch_at(double x) const noexcept;
+  [[nodiscard]] DofRange dofs_of_stretch(int stretch, double reach) const;
+  std::unique_ptr<SparseLdlt> near_;  ///< made when first needed
+  int near_stretch_ = -1;
   struct FewEntries;
   std::unique_ptr<FewEntries> few_;
   bool at_rest_ = false;
-  std::vector<int> node_;  ///< of every unknown, for the order of elimination
   Eigen::Index dofs_ = 0;
   /// Per rail and node. Where the rails mirror each other: of the left one only.
   std::array<std::vector<Column>, 2> column_;

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "railtab/runtime/vsi/operator_room.hpp"
+
 namespace railtab {
 
 namespace {
@@ -32,31 +34,35 @@ bool equal(const StructureModel& a, const StructureModel& b) {
 }  // namespace
 
 void StructureStore::take_up(const SharedStructure& structure) {
-  if (structure_ == structure) return;
+  if (last_ == structure) return;
   if (!structure_ || !equal(*structure_, *structure)) {
     at_rest_.reset();
     of_steps_.clear();
+    matrices_.reset();
+    structure_ = structure;
   }
-  structure_ = structure;
+  last_ = structure;
 }
 
 std::shared_ptr<StructureResponse> StructureStore::at_rest(const SharedStructure& structure) {
   take_up(structure);
-  if (!at_rest_) at_rest_ = std::make_shared<StructureResponse>(*structure);
+  if (!at_rest_) at_rest_ = std::make_shared<StructureResponse>(*structure_);
   return at_rest_;
 }
 
 std::shared_ptr<StructureResponse> StructureStore::of_steps(const SharedStructure& structure, const HhtScheme& scheme,
                                                             const DofRange& active) {
-  constexpr std::size_t most_kept = 3;
   take_up(structure);
   const auto found = std::find_if(of_steps_.begin(), of_steps_.end(), [&](const OfSteps& kept) {
     return kept.alpha == scheme.alpha && kept.time_step == scheme.time_step;
   });
   if (found == of_steps_.end()) {
-    if (of_steps_.size() == most_kept) of_steps_.erase(of_steps_.begin());
+    OperatorRoom room;
+    for (const OfSteps& kept : of_steps_) room.add(static_cast<double>(kept.response->bytes()));
+    if (!room.for_another()) of_steps_.erase(of_steps_.begin());
+    if (!matrices_) matrices_ = std::make_shared<StepMatrices>(*structure_, active.count == structure_->dofs());
     of_steps_.push_back(
-        {scheme.alpha, scheme.time_step, std::make_shared<StructureResponse>(*structure, scheme, active)});
+        {scheme.alpha, scheme.time_step, std::make_shared<StructureResponse>(matrices_, scheme, active)});
     of_steps_.back().response->keep_for_later_runs();
   } else {
     std::rotate(found, found + 1, of_steps_.end());

@@ -22,7 +22,9 @@ class StructureStore {
   /// Forgets everything where the structure is another.
   void take_up(const SharedStructure& structure);
 
-  SharedStructure structure_;
+  /// Those that responses refer to, and those of the last call, which are equal to them.
+  SharedStructure structure_, last_;
+  std::shared_ptr<const StepMatrices> matrices_;
   std::shared_ptr<StructureResponse> at_rest_;
   struct OfSteps {
     double alpha, time_step;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "railtab/runtime/algebra/elimination_order.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
+#include "railtab/runtime/vsi/operator_room.hpp"
 
 namespace railtab {
 namespace {
@@ -158,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(Bridges, RailCompliances, ::testing::Values(0, 1, 2));
 TEST_P(RailCompliances, AreThoseOfASolveAtThePositions) {
   const StructureModel structure = RailCompliances::structure();
   StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
-  response.tabulate_compliance(structure, 100.0, -100.0, 100.0);  // all of it: nothing is left to the far field
+  response.tabulate_compliance(100.0, -100.0, 100.0);  // all of it: nothing is left to the far field
   EXPECT_EQ(response.rails_mirror(), GetParam() == 0);
   std::vector<RailContact> contacts;
   for (const double x : {-3.21, 0.1, 2.345, 5.99}) append_rail_heads(structure, x, contacts);
@@ -199,7 +201,7 @@ TEST(StructureResponse, TabulatedComplianceHoldsAtNodes) {
   track.length_before = track.length_after = 60.0;
   const StructureModel structure = build_track_bridge(track, {});
   StructureResponse response(structure, HhtScheme{.alpha = -0.05, .time_step = 5e-4});
-  response.tabulate_compliance(structure, 5.0, -60.0, 60.0);
+  response.tabulate_compliance(5.0, -60.0, 60.0);
   const RailLine& rail = structure.rail[0];
   for (std::size_t node = 1; node + 1 < rail.x.size(); ++node) {
     const auto at = [&](double x) {
@@ -220,7 +222,7 @@ TEST(StructureResponse, TabulatedComplianceHoldsAtNodes) {
 TEST(StructureResponse, VerticalComplianceHasTheLinesSlopeAndCurvature) {
   const StructureModel structure = short_bridge();
   StructureResponse response(structure, HhtScheme{.alpha = -0.1, .time_step = 1e-3});
-  response.tabulate_compliance(structure, 100.0, -100.0, 100.0);
+  response.tabulate_compliance(100.0, -100.0, 100.0);
   const RailContact load = rail_contact(structure, RailSide::left, 2.345);
   for (const RailSide side : {RailSide::left, RailSide::right}) {
     const auto at = [&](double x) { return response.vertical_compliance(rail_contact(structure, side, x), load); };
@@ -278,6 +280,54 @@ TEST(EliminationOrder, HubsDoNotFillTheFactor) {
   const double fine = entries_per_unknown(100);
   EXPECT_LT(fine, 300.0);
   EXPECT_LT(entries_per_unknown(2), 1.5 * fine);
+}
+
+// On a line of three kilometres compliances come from factors of stretches, on a shorter one from that of all unknowns:
+// the same about a place where two stretches meet, which the train may come to from either side.
+TEST(StructureResponse, CompliancesOfStretchesAreThoseOfTheWholeLine) {
+  TrackParameters track;
+  track.elements_per_bay = 1;
+  track.length_before = track.length_after = 1500.0;
+  const StructureModel line = build_track_bridge(track, {}, MotionPlane::vertical);
+  StructureModel unplaced = line;  // no stretches
+  unplaced.dof_x.clear();
+  unplaced.dof_line.clear();
+  const HhtScheme scheme{.alpha = -0.05, .time_step = 1e-3};
+  StructureResponse by_stretches(line, scheme), whole(unplaced, scheme), from_behind(line, scheme);
+  const double vectors = 6.0 * sizeof(double) * line.dofs();  // of few entries of a solution
+  EXPECT_LT(by_stretches.memory().low - vectors, 0.5 * whole.memory().kept);
+  by_stretches.tabulate_compliance(5.0, -520.0, -480.0);
+  whole.tabulate_compliance(5.0, -520.0, -480.0);
+  from_behind.tabulate_compliance(5.0, -490.0, -480.0);
+  from_behind.tabulate_compliance(5.0, -520.0, -480.0);
+  double largest = 0.0, difference = 0.0;
+  for (double x = -515.0; x < -485.0; x += 0.7) {
+    const RailContact i = rail_contact(line, RailSide::left, x), j = rail_contact(line, RailSide::right, x + 2.5);
+    for (const auto& [a, b] : {std::pair(i, i), std::pair(i, j), std::pair(j, i)}) {
+      const Eigen::Matrix3d expected = whole.compliance(a, b), found = by_stretches.compliance(a, b);
+      largest = std::max(largest, expected.cwiseAbs().maxCoeff());
+      difference = std::max(difference, (found - expected).cwiseAbs().maxCoeff());
+      EXPECT_EQ(found, from_behind.compliance(a, b)) << x;
+    }
+  }
+  std::printf("compliances of stretches: off by %.1g of the largest\n", difference / largest);
+  EXPECT_GT(largest, 0.0);
+  EXPECT_LT(difference, 1e-12 * largest);
+}
+
+// Operators of many sizes are kept where they are small, of three where they are large.
+TEST(OperatorRoom, IsBoundedByCountAndBytes) {
+  const auto fit = [](double bytes) {
+    OperatorRoom room;
+    while (room.for_another()) room.add(bytes);
+    return room.count;
+  };
+  EXPECT_EQ(fit(1e6), OperatorRoom::most);
+  EXPECT_EQ(fit(1e9), OperatorRoom::least);
+  EXPECT_EQ(fit(OperatorRoom::kept_bytes / 5.0), 5);
+  for (const double one : {1e6, OperatorRoom::kept_bytes / 5.0, 1e9}) {
+    EXPECT_GE(OperatorRoom::of_others(one), (fit(one) - 1) * one);
+  }
 }
 
 // In sections where the active unknowns are many, as a whole where they are few: the same increment.

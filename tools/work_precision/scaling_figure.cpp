@@ -88,7 +88,7 @@ std::vector<WorkFigure> scaling_figures(const std::filesystem::path& geometry_ta
                                   "processor time per step [s]",
                                   "The contacts cost the same for every wheel. The structure's part, which "
                                   "remains for a short train on a long track, does not depend on the wheels.");
-  std::vector<double> lengths{40.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0, 19500.0};  // m
+  std::vector<double> lengths{40.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0, 40000.0};  // m
   std::vector<int> trains{1, 8, 32};
   if (quick) {
     lengths = {40.0, 100.0};
