@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <cstddef>
 #include <vector>
 
 #include "railtab/runtime/base/dof_range.hpp"
@@ -18,8 +19,10 @@ class PairedProduct {
   /// f <- f − K u − C v of the unknowns in the range, all others being zero.
   void subtract(const double* u, const double* v, const DofRange& range, double* f) const noexcept;
   [[nodiscard]] bool empty() const noexcept { return begin_.empty(); }
-  /// What subtract() reads [bytes].
-  [[nodiscard]] std::size_t bytes() const noexcept { return entry_.size() * (sizeof(Entry) + sizeof(int)); }
+  /// What it takes, and what subtract() reads [bytes].
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return entry_.size() * (sizeof(Entry) + sizeof(int)) + begin_.size() * sizeof(int);
+  }
 
  private:
   struct Entry {

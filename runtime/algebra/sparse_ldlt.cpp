@@ -19,7 +19,7 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 // Blocks in an order in which none waits for the one before it: leaves of the elimination tree first, then what hangs
-// on leaves only, and so on; of these, equal ones follow each other, as the processor foresees what is done again.
+// on leaves only, and so on; of these, equal ones follow each other, for which a processor predicts branches rightly.
 std::vector<int> by_height(const EliminationTree& tree) {
   std::vector<int> height(tree.parent.size(), 0), order(tree.parent.size());
   std::iota(order.begin(), order.end(), 0);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <vector>
 
 namespace railtab {
 
@@ -12,5 +14,11 @@ struct DofRange {
   [[nodiscard]] auto of(const Eigen::VectorXd& vector) const { return vector.segment(begin, count); }
   bool operator==(const DofRange&) const = default;
 };
+
+/// Unknowns with from <= x <= to. @param x of every unknown, not decreasing
+[[nodiscard]] inline DofRange dofs_between(const std::vector<double>& x, double from, double to) {
+  const auto begin = std::lower_bound(x.begin(), x.end(), from) - x.begin();
+  return {begin, std::upper_bound(x.begin(), x.end(), to) - x.begin() - begin};
+}
 
 }  // namespace railtab

@@ -118,7 +118,7 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   plan.undivided = allocator * std::max({peak, common + start, undivided});
   plan.most = plan.undivided + allocator * OperatorRoom::of_others(operators + one);
   plan.step_reads = 2.0 * static_cast<double>(response.factor().bytes()) + static_cast<double>(response.load_bytes());
-  plan.entries_per_dof = m.low_entries / static_cast<double>(active.count);
+  plan.entries_per_dof = m.low_entries / m.low_unknowns;
   return plan;
 }
 

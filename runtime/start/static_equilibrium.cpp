@@ -77,7 +77,7 @@ class RestOperators {
     }
     if (!model.structure) return;
     structure =
-        model.store ? model.store->at_rest(model.structure) : std::make_shared<StructureResponse>(*model.structure);
+        model.store ? model.store->at_rest(model.structure) : std::make_shared<StructureResponse>(model.structure);
   }
 
   // all_couplings() where the train stands at a time; kept, since equilibria return there, where they are not many.

@@ -17,15 +17,10 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr int span_modes = 16;   // of a span with its track: those of the deck that matter after a train
-constexpr double stride = 10.0;  // m: the window moves on by as much at a time
-constexpr int together = 8;      // dofs, of which a span's motion is computed side by side
-
-// Unknowns with from <= x <= to.
-DofRange dofs_between(const std::vector<double>& x, double from, double to) {
-  const auto begin = std::lower_bound(x.begin(), x.end(), from) - x.begin();
-  return {begin, std::upper_bound(x.begin(), x.end(), to) - x.begin() - begin};
-}
+constexpr int span_modes = 16;  // of a span with its track: those of the deck that matter after a train
+// The window moves on by this share of its length at a time, no less than the least stride.
+constexpr double share_of_window = 0.125, least_stride = 10.0;  // [-], m
+constexpr int together = 8;  // dofs, of which a span's motion is computed side by side
 
 // Unknowns with from < x < to.
 DofRange dofs_within(const std::vector<double>& x, double from, double to) {
@@ -149,10 +144,15 @@ MovingWindow::MovingWindow(const VsiModel& model, double time_step)
   }
 }
 
+// Both ends move at once, as the train passes a multiple of the stride: each move takes a new factor.
 MovingWindow::Ends MovingWindow::ends(long step) const {
   const WindowModel& window = *model_.window;
   const double time = static_cast<double>(step) * scheme_.time_step;
-  Ends ends{model_.wheelset_x(model_.wheelsets() - 1, time), model_.wheelset_x(0, time)};
+  const int last = model_.wheelsets() - 1;
+  const double length = model_.wheelset_x(0, 0.0) - model_.wheelset_x(last, 0.0);  // to the bit at all times
+  const double stride = std::max(least_stride, share_of_window * (length + window.behind + window.ahead));
+  const double passed = stride * std::floor(model_.wheelset_x(last, time) / stride);
+  Ends ends{passed, passed + stride + length};
   const auto whole_spans = [&] {
     for (const SpanModes& span : window.spans) {
       if (span.from < ends.from && ends.from < span.to) ends.from = span.from;
@@ -161,8 +161,8 @@ MovingWindow::Ends MovingWindow::ends(long step) const {
   };
   // A span under load turns at its bearings and bends the rails there: the cut stands beyond its neighbour.
   whole_spans();
-  ends.from = stride * std::floor((ends.from - window.behind) / stride);
-  ends.to = stride * std::ceil((ends.to + window.ahead) / stride);
+  ends.from -= window.behind;
+  ends.to += window.ahead;
   whole_spans();
   return ends;
 }

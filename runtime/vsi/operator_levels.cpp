@@ -16,7 +16,7 @@ const StepOperators& OperatorLevels::update(int level, double end, const DofRang
     make_room(level);
     const HhtScheme scheme{.alpha = alpha_, .time_step = length(level)};
     if (model_.structure && !model_.store && !matrices_) {
-      matrices_ = std::make_shared<StepMatrices>(*model_.structure, !model_.window);
+      matrices_ = std::make_shared<StepMatrices>(model_.structure, !model_.window);
     }
     found = operators_.emplace(level, StepOperators(model_, scheme, matrices_)).first;
   }
@@ -27,11 +27,15 @@ const StepOperators& OperatorLevels::update(int level, double end, const DofRang
 // Memory is bounded: of divided steps' operators, those of the level farthest from the one to come go. Nobody holds on
 // to operators of another level: a step that is divided no longer needs its own.
 void OperatorLevels::make_room(int level) {
-  OperatorRoom room;
-  for (const auto& [of_level, operators] : operators_) room.add(operators.bytes(model_));
-  if (room.for_another()) return;
-  const auto finest = std::prev(operators_.end()), coarsest = std::next(operators_.begin());
-  operators_.erase(std::abs(finest->first - level) > std::abs(coarsest->first - level) ? finest : coarsest);
+  const auto has_room = [&] {
+    OperatorRoom room;
+    for (const auto& [of_level, operators] : operators_) room.add(operators.bytes(model_));
+    return room.for_another();
+  };
+  while (!has_room()) {
+    const auto finest = std::prev(operators_.end()), coarsest = std::next(operators_.begin());
+    operators_.erase(std::abs(finest->first - level) > std::abs(coarsest->first - level) ? finest : coarsest);
+  }
 }
 
 }  // namespace railtab

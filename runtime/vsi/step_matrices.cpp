@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/vsi/linear_motion.hpp"
@@ -109,7 +110,9 @@ Sparse effective_matrix(const StructureModel& structure, const HhtScheme& scheme
   return effective(scheme, structure.mass, structure.damping, structure.stiffness, range);
 }
 
-StepMatrices::StepMatrices(const StructureModel& structure, bool all_active) : structure_(structure) {
+StepMatrices::StepMatrices(SharedStructure shared, bool all_active)
+    : structure_(std::move(shared)), all_active_(all_active) {
+  const StructureModel& structure = *structure_;
   require_finite(structure);
   const auto& line = structure.dof_line;
   if (line.empty() || (all_active && std::find(line.begin(), line.end(), -1) != line.end())) {

@@ -15,11 +15,12 @@ class StepMatrices {
  public:
   using Sparse = Eigen::SparseMatrix<double>;
 
-  /// @param structure outlives this @param all_active whether all unknowns take part in every step, rather than those
-  ///        of a window @throws InputError naming the matrix and the entry that is not finite
-  StepMatrices(const StructureModel& structure, bool all_active);
+  /// @param all_active whether all unknowns take part in every step, rather than those of a window
+  /// @throws InputError naming the matrix and the entry that is not finite
+  StepMatrices(SharedStructure structure, bool all_active);
 
-  [[nodiscard]] const StructureModel& structure() const noexcept { return structure_; }
+  [[nodiscard]] const SharedStructure& structure() const noexcept { return structure_; }
+  [[nodiscard]] bool all_active() const noexcept { return all_active_; }
   /// Whether the unknowns have lines, by which the structure may be cut into sections.
   [[nodiscard]] bool divisible() const noexcept { return stiffness_.size() > 0; }
   /// Of the rails' unknowns; none where the matrices do not get sparser by them.
@@ -37,7 +38,8 @@ class StepMatrices {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
-  const StructureModel& structure_;
+  SharedStructure structure_;
+  bool all_active_;
   MirrorPairs pairs_;
   UnknownPlaces places_;
   Sparse mass_, damping_, stiffness_;

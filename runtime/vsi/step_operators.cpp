@@ -29,7 +29,7 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht, std::s
   if (model.store) {
     structure = model.store->of_steps(model.structure, hht, active);
   } else {
-    if (!matrices) matrices = std::make_shared<StepMatrices>(*model.structure, !model.window);
+    if (!matrices) matrices = std::make_shared<StepMatrices>(model.structure, !model.window);
     structure = std::make_shared<StructureResponse>(std::move(matrices), hht, active);
   }
 }

@@ -1,13 +1,10 @@
 #include "railtab/runtime/vsi/structure_response.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 #include "railtab/runtime/algebra/section_layout.hpp"
@@ -22,6 +19,8 @@ namespace {
 constexpr double most_kept = 64.0 * 1024.0 * 1024.0;  // bytes, of compliances and of factors: keep_for_later_runs()
 
 using Sparse = Eigen::SparseMatrix<double>;
+
+SharedStructure not_owned(const StructureModel& structure) { return {SharedStructure(), &structure}; }
 
 constexpr const char* not_positive_definite =
     "the structure's effective matrix is not positive definite: check supports and stiffnesses";
@@ -166,8 +165,8 @@ StructureResponse::StructureResponse(const StructureModel& structure, const HhtS
     : StructureResponse(structure, scheme, {0, structure.dofs()}) {}
 
 StructureResponse::StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active)
-    : StructureResponse(std::make_shared<const StepMatrices>(structure, active.count == structure.dofs()), scheme,
-                        active) {}
+    : StructureResponse(std::make_shared<const StepMatrices>(not_owned(structure), active.count == structure.dofs()),
+                        scheme, active) {}
 
 StructureResponse::StructureResponse(std::shared_ptr<const StepMatrices> matrices, const HhtScheme& scheme,
                                      const DofRange& active)
@@ -175,14 +174,16 @@ StructureResponse::StructureResponse(std::shared_ptr<const StepMatrices> matrice
       structure_(matrices->structure()),
       matrices_(std::move(matrices)),
       divisible_(matrices_->divisible()),
-      dofs_(structure_.dofs()),
+      dofs_(structure_->dofs()),
       rails_mirror_(matrices_->rails_mirror()) {
   if (active.count > 0) activate(active);
 }
 
-StructureResponse::StructureResponse(const StructureModel& structure)
-    : structure_(structure), at_rest_(true), dofs_(structure.dofs()) {
-  require_finite(structure);
+StructureResponse::StructureResponse(const StructureModel& structure) : StructureResponse(not_owned(structure)) {}
+
+StructureResponse::StructureResponse(SharedStructure structure)
+    : structure_(std::move(structure)), at_rest_(true), dofs_(structure_->dofs()) {
+  require_finite(*structure_);
   activate({0, dofs_});
 }
 
@@ -230,17 +231,17 @@ void StructureResponse::make_factor() {
       }
       inaccurate = true;
     }
-    if (own_product_.empty()) own_product_ = PairedProduct(structure_.stiffness, structure_.damping);
+    if (own_product_.empty()) own_product_ = PairedProduct(structure_->stiffness, structure_->damping);
     if (inaccurate) divisible_ = false;  // nor would sections of another window be accurate
   }
-  factor_ = natural_factor(dofs);
+  factor_ = undivided_factor(dofs, order_of_steps());
 }
 
-std::unique_ptr<SparseLdlt> StructureResponse::natural_factor(const DofRange& dofs) const {
+std::unique_ptr<SparseLdlt> StructureResponse::undivided_factor(const DofRange& dofs, EliminationOrder order) const {
   const auto make = [&](const Sparse& matrix) {
-    return std::make_unique<SparseLdlt>(matrix, dofs, not_positive_definite, order_of(dofs), structure_.dof_node);
+    return std::make_unique<SparseLdlt>(matrix, dofs, not_positive_definite, order, structure_->dof_node);
   };
-  return at_rest_ ? make(structure_.stiffness) : make(effective_matrix(structure_, scheme_, dofs));
+  return at_rest_ ? make(structure_->stiffness) : make(effective_matrix(*structure_, scheme_, dofs));
 }
 
 // The rounding of the sections' factor to single precision acts as an added mass of either sign, up to 6e-8 of a
@@ -259,15 +260,15 @@ std::unique_ptr<SubstitutionFactor> StructureResponse::accurate_sections(
   }
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(dofs_), load = moved;
   for (Eigen::Index i = active_.begin; i < active_.end(); ++i) {
-    if (structure_.dof_line[static_cast<std::size_t>(i)] % lines_per_node < translations) moved[i] = 1.0;
+    if (structure_->dof_line[static_cast<std::size_t>(i)] % lines_per_node < translations) moved[i] = 1.0;
   }
   const auto add = [&](const Sparse& matrix, double weight) {
     visit_entries(matrix, active_,
                   [&](Eigen::Index i, Eigen::Index j, double value) { load[i] += weight * value * moved[j]; });
   };
-  add(structure_.mass, scheme_.acceleration_rate());
-  add(structure_.damping, scheme_.load_weight() * scheme_.velocity_rate());
-  add(structure_.stiffness, scheme_.load_weight());
+  add(structure_->mass, scheme_.acceleration_rate());
+  add(structure_->damping, scheme_.load_weight() * scheme_.velocity_rate());
+  add(structure_->stiffness, scheme_.load_weight());
   const Eigen::VectorXd solution = factor->solve(load);
   for (Eigen::Index i = active_.begin; i < active_.end(); ++i) {
     if (moved[i] != 0.0 && !(std::abs(solution[i] - 1.0) < most)) return nullptr;  // a NaN, too
@@ -275,58 +276,78 @@ std::unique_ptr<SubstitutionFactor> StructureResponse::accurate_sections(
   return factor;
 }
 
-// The factor of all unknowns serves the compliances, too, and so do those of stretches: their paths should be short.
-// One at rest or of a window soon goes.
-EliminationOrder StructureResponse::order_of(const DofRange& dofs) const noexcept {
-  return !at_rest_ && (dofs.count == dofs_ || dofs != active_) ? EliminationOrder::nested_dissection
-                                                               : EliminationOrder::minimum_degree;
+// The factor of all unknowns serves the compliances, too, whose paths should be short; one at rest or of a window soon
+// goes.
+EliminationOrder StructureResponse::order_of_steps() const noexcept {
+  return active_.count == dofs_ && !at_rest_ ? EliminationOrder::nested_dissection : EliminationOrder::minimum_degree;
 }
 
-bool StructureResponse::factor_is_whole() const noexcept { return factor_ && !product_ && active_.count == dofs_; }
+// Where steps have other unknowns at other times, compliances may not depend on those of the moment.
+bool StructureResponse::steps_give_compliances() const noexcept {
+  return !product_ && active_.count == dofs_ && (at_rest_ || matrices_->all_active() || stretches() == 1);
+}
 
 namespace {
+
+double longest_element(const RailLine& rail) {
+  double longest = 0.0;
+  for (std::size_t i = 1; i < rail.x.size(); ++i) longest = std::max(longest, rail.x[i] - rail.x[i - 1]);
+  return longest;
+}
+
+double longest_element(const StructureModel& structure) {
+  return std::max(longest_element(structure.rail[0]), longest_element(structure.rail[1]));
+}
 
 constexpr double stretch_length = 1000.0;  // m
 constexpr double stretch_margin = 50.0;    // m: what happens so far away does not reach a rail head within a step
 
 }  // namespace
 
-// A line of less than two stretches is one: all unknowns.
 int StructureResponse::stretches() const noexcept {
-  const auto& x = structure_.dof_x;
+  const auto& x = structure_->dof_x;
   return x.empty() ? 1 : std::max(1, static_cast<int>((x.back() - x.front()) / stretch_length));
 }
 
 int StructureResponse::stretch_at(double x) const noexcept {
   const int last = stretches() - 1;
   if (last == 0) return 0;
-  return std::clamp(static_cast<int>((x - structure_.dof_x.front()) / stretch_length), 0, last);
+  return std::clamp(static_cast<int>((x - structure_->dof_x.front()) / stretch_length), 0, last);
 }
 
+// All unknowns where there is one stretch alone. Decks are not cut: modes are all at one place.
 DofRange StructureResponse::dofs_of_stretch(int stretch, double reach) const {
-  const auto& x = structure_.dof_x;
+  const auto& x = structure_->dof_x;
   const int last = stretches() - 1;
   if (last == 0) return {0, dofs_};
-  const double from = x.front() + stretch * stretch_length, margin = stretch_margin + reach;
-  const auto begin = stretch == 0 ? x.begin() : std::lower_bound(x.begin(), x.end(), from - margin);
-  const auto end = stretch == last ? x.end() : std::upper_bound(x.begin(), x.end(), from + stretch_length + margin);
-  return {begin - x.begin(), end - begin};
+  const double begin = x.front() + stretch * stretch_length, margin = stretch_margin + reach;
+  double from = stretch == 0 ? x.front() : begin - margin,
+         to = stretch == last ? x.back() : begin + stretch_length + margin;
+  const double within_from = from, within_to = to;
+  for (const auto& [span_from, span_to] : structure_->spans) {
+    if (span_to < within_from || span_from > within_to) continue;
+    from = std::min(from, span_from);
+    to = std::max(to, span_to);
+  }
+  return dofs_between(x, from, to);
 }
 
-const SubstitutionFactor& StructureResponse::factor_near(double x, double reach) {
-  if (factor_is_whole()) return *factor_;
+const SubstitutionFactor& StructureResponse::compliance_factor(double x, double reach) {
+  if (steps_give_compliances()) return *factor_;
   const int stretch = stretch_at(x);
-  if (!near_ || stretch != near_stretch_) {
-    near_.reset();  // not two at a time
-    near_ = natural_factor(dofs_of_stretch(stretch, reach));
-    near_stretch_ = stretch;
+  if (!of_stretch_ || stretch != stretch_) {
+    of_stretch_.reset();  // not two at a time
+    of_stretch_ = undivided_factor(dofs_of_stretch(stretch, reach), EliminationOrder::nested_dissection);
+    stretch_ = stretch;
   }
-  return *near_;
+  return *of_stretch_;
 }
 
 std::size_t StructureResponse::bytes() const noexcept {
+  constexpr std::size_t vectors = 6;  // of a substitution for few entries
   std::size_t sum = own_product_.bytes() + (factor_ ? factor_->stored_bytes() : 0) +
-                    (product_ ? product_->bytes() : 0) + (near_ ? near_->stored_bytes() : 0);
+                    (product_ ? product_->bytes() : 0) + (of_stretch_ ? of_stretch_->stored_bytes() : 0) +
+                    (few_ ? vectors * sizeof(double) * static_cast<std::size_t>(dofs_) : 0);
   for (const Kept& kept : kept_) sum += kept.bytes;
   for (const std::vector<Column>& columns : column_) {
     sum += columns.capacity() * sizeof(Column);
@@ -338,57 +359,53 @@ std::size_t StructureResponse::bytes() const noexcept {
 }
 
 StructureResponse::Memory StructureResponse::memory() const {
-  constexpr double entry = sizeof(double) + sizeof(int);
-  const auto nonzeros = [&](const DofRange& dofs) {
-    return static_cast<double>(
-        (at_rest_ ? structure_.stiffness : effective_matrix(structure_, scheme_, dofs)).nonZeros());
-  };
+  constexpr double room = 2.0;  // of what a sum of sparse matrices may take for its entries
   const auto n = static_cast<double>(dofs_);
+  const auto undivided = [&](const DofRange& dofs, EliminationOrder order) {
+    const Sparse matrix = at_rest_ ? structure_->stiffness : effective_matrix(*structure_, scheme_, dofs);
+    const double entries = room * (sizeof(double) + sizeof(int)) * static_cast<double>(matrix.nonZeros());
+    return std::pair(SparseLdlt::memory(matrix, dofs, order, structure_->dof_node),
+                     at_rest_ ? 0.0 : entries + sizeof(int) * n);
+  };
   Memory memory;
   memory.shared = matrices_ ? static_cast<double>(matrices_->bytes()) : 0.0;
   memory.kept = static_cast<double>(factor_->stored_bytes() + own_product_.bytes()) +
                 static_cast<double>(product_ ? product_->bytes() : 0);
   memory.low = 6.0 * sizeof(double) * n;  // vectors of a substitution
-  double low_stored = 0.0, of_stretch = 0.0, whole_made = 0.0;
-  for (int stretch = 0; stretch < stretches(); ++stretch) {
-    const DofRange dofs = dofs_of_stretch(stretch, 0.0);
-    const Sparse effective = at_rest_ ? structure_.stiffness : effective_matrix(structure_, scheme_, dofs);
-    const SparseLdlt::Memory of = SparseLdlt::memory(effective, dofs, order_of(dofs), structure_.dof_node);
-    memory.low_entries += static_cast<double>(of.entries);
-    whole_made = std::max(whole_made, static_cast<double>(of.made));
-    low_stored = std::max(low_stored, static_cast<double>(of.stored));
-    constexpr double room = 2.0;  // that a sum of sparse matrices may take for its entries
-    of_stretch = std::max(of_stretch, room * entry * static_cast<double>(effective.nonZeros()) + sizeof(int) * n);
-  }
-  if (factor_is_whole()) {
-    memory.setup = whole_made + (at_rest_ ? 0.0 : of_stretch);
+  if (steps_give_compliances()) {
+    const auto [factor, matrix] = undivided(active_, order_of_steps());
+    memory.setup = static_cast<double>(factor.made) + matrix;
+    memory.low_entries = static_cast<double>(factor.entries);
+    memory.low_unknowns = n;
     return memory;
   }
-  memory.low += low_stored;
-  memory.low_setup = whole_made + of_stretch;
-  const double of_active = entry * nonzeros(active_) + sizeof(int) * n;
+  double stored = 0.0;
+  const double reach = longest_element(*structure_);
+  for (int stretch = 0; stretch < stretches(); ++stretch) {
+    const DofRange dofs = dofs_of_stretch(stretch, reach);
+    const auto [factor, matrix] = undivided(dofs, EliminationOrder::nested_dissection);
+    stored = std::max(stored, static_cast<double>(factor.stored));
+    memory.low_setup = std::max(memory.low_setup, static_cast<double>(factor.made) + matrix);
+    memory.low_entries += static_cast<double>(factor.entries);
+    memory.low_unknowns += static_cast<double>(dofs.count);
+  }
+  memory.low += stored;
+  const auto [factor, matrix] = undivided(active_, order_of_steps());
   if (product_) {
     // An estimate of what the division into sections works on beside the matrix: copies of the pattern, or its entries
     // and the factor's, twice as wide until they are stored, beside the factor.
-    memory.setup = of_active + std::max(3.5 * of_active, of_active + 2.0 * static_cast<double>(factor_->bytes()));
+    const double entries = matrix / room;
+    memory.setup = matrix + std::max(3.5 * entries, entries + 2.0 * static_cast<double>(factor_->bytes()));
   } else {
-    const Sparse effective = effective_matrix(structure_, scheme_, active_);
-    memory.setup = of_active + static_cast<double>(
-                                   SparseLdlt::memory(effective, active_, order_of(active_), structure_.dof_node).made);
+    memory.setup = matrix + static_cast<double>(factor.made);
   }
   return memory;
 }
 
 namespace {
 
-double longest_element(const RailLine& rail) {
-  double longest = 0.0;
-  for (std::size_t i = 1; i < rail.x.size(); ++i) longest = std::max(longest, rail.x[i] - rail.x[i - 1]);
-  return longest;
-}
-
 // A wheel loads both nodes of its element, and is always coupled to them, however long the element is.
-double reach_of(const RailLine& rail, double window) { return std::max(window, longest_element(rail)); }
+double reach_of(const StructureModel& structure, double window) { return std::max(window, longest_element(structure)); }
 
 // Most nodes of a rail within `reach` of a position on it.
 std::size_t most_nodes(const RailLine& rail, double reach) {
@@ -404,10 +421,10 @@ std::size_t most_nodes(const RailLine& rail, double reach) {
 
 double StructureResponse::table_bytes(double window, double from, double to) const {
   double bytes = 0.0;
-  for (const RailLine& rail : std::span(structure_.rail).first(tabulated_rails())) {
-    const double longest = longest_element(rail), reach = reach_of(rail, window);
+  for (const RailLine& rail : std::span(structure_->rail).first(tabulated_rails())) {
+    const double longest = longest_element(rail), reach = reach_of(*structure_, window);
     double blocks = 0.0;
-    for (const RailLine& other : structure_.rail) blocks += static_cast<double>(most_nodes(other, reach));
+    for (const RailLine& other : structure_->rail) blocks += static_cast<double>(most_nodes(other, reach));
     const auto columns =
         std::count_if(rail.x.begin(), rail.x.end(), [&](double x) { return x >= from - longest && x <= to + longest; });
     bytes +=
@@ -464,20 +481,21 @@ Eigen::VectorXd StructureResponse::increment(const LinearMotion& motion, const E
 }
 
 std::size_t StructureResponse::load_bytes() const noexcept {
+  assert(!at_rest_);
   return product_ ? product_->bytes() : paired_product().bytes();
 }
 
 StructureResponse::Column StructureResponse::column_of(double reach, std::size_t side, std::size_t node,
                                                        const std::array<std::size_t, 2>& room) {
-  const RailLine& rail = structure_.rail[side];
-  const SubstitutionFactor& factor = factor_near(rail.x[node], reach);
+  const RailLine& rail = structure_->rail[side];
+  const SubstitutionFactor& factor = compliance_factor(rail.x[node], reach);
   FewEntries& s = *few_;
   Column column;
   std::vector<int> involved;
   const DofIndices of_node = head_dofs(rail, node);
   append_free(of_node, involved);
   for (std::size_t other = 0; other < 2; ++other) {
-    const RailLine& to = structure_.rail[other];
+    const RailLine& to = structure_->rail[other];
     const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - reach) - to.x.begin();
     const auto end = std::upper_bound(to.x.begin(), to.x.end(), rail.x[node] + reach) - to.x.begin();
     column.first[other] = static_cast<int>(begin);
@@ -495,7 +513,7 @@ StructureResponse::Column StructureResponse::column_of(double reach, std::size_t
     for (std::size_t other = 0; other < 2; ++other) {
       const auto first = static_cast<std::size_t>(column.first[other]);
       for (std::size_t n = 0; n < column.rows[other].size(); ++n) {
-        const DofIndices dofs = head_dofs(structure_.rail[other], first + n);
+        const DofIndices dofs = head_dofs(structure_->rail[other], first + n);
         for (std::size_t k = 0; k < 6; ++k) {
           if (dofs[k] == held) continue;
           column.rows[other][n](static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(load)) = moved[dofs[k]];
@@ -508,11 +526,11 @@ StructureResponse::Column StructureResponse::column_of(double reach, std::size_t
 
 void StructureResponse::tabulate_compliance(double window, double from, double to) {
   if (!few_) few_ = std::make_unique<FewEntries>(dofs_);
-  const RailLine& line = structure_.rail[0];
+  const RailLine& line = structure_->rail[0];
   const bool keeps = keeps_ && table_bytes(window, line.x.front(), line.x.back()) <= most_kept;
   const auto visit = [&](auto&& visitor) {
     for (std::size_t side = 0; side < tabulated_rails(); ++side) {
-      const RailLine& rail = structure_.rail[side];
+      const RailLine& rail = structure_->rail[side];
       const double longest = longest_element(rail);
       for (std::size_t node = 0; node < rail.x.size(); ++node) {
         visitor(side, node, rail.x[node] >= from - longest && rail.x[node] <= to + longest);
@@ -521,18 +539,14 @@ void StructureResponse::tabulate_compliance(double window, double from, double t
   };
   // New columns take the place of those that are dropped before: all have the room of the largest.
   visit([&](std::size_t side, std::size_t node, bool covered) {
-    column_[side].resize(structure_.rail[side].x.size());
+    column_[side].resize(structure_->rail[side].x.size());
     if (!covered && !keeps) column_[side][node] = {};
   });
-  std::array<double, 2> reach;
-  std::array<std::array<std::size_t, 2>, 2> room;
-  for (std::size_t side = 0; side < 2; ++side) {
-    reach[side] = reach_of(structure_.rail[side], window);
-    for (std::size_t other = 0; other < 2; ++other) room[side][other] = most_nodes(structure_.rail[other], reach[side]);
-  }
+  const double reach = reach_of(*structure_, window);
+  const std::array<std::size_t, 2> room{most_nodes(structure_->rail[0], reach), most_nodes(structure_->rail[1], reach)};
   visit([&](std::size_t side, std::size_t node, bool covered) {
     if (!covered || !column_[side][node].rows[side].empty()) return;
-    column_[side][node] = column_of(reach[side], side, node, room[side]);
+    column_[side][node] = column_of(reach, side, node, room);
   });
 }
 

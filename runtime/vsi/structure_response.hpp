@@ -84,9 +84,10 @@ class StructureResponse {
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme);
   /// @param active the unknowns that take part; none: there is no factor until activate()
   StructureResponse(const StructureModel& structure, const HhtScheme& scheme, const DofRange& active);
-  /// Likewise, of matrices that steps of other sizes share.
+  /// The same of matrices that steps of other sizes share.
   StructureResponse(std::shared_ptr<const StepMatrices> matrices, const HhtScheme& scheme, const DofRange& active);
   /// At rest: K̄ = K, factored as a whole.
+  explicit StructureResponse(SharedStructure structure);
   explicit StructureResponse(const StructureModel& structure);
   ~StructureResponse();
 
@@ -119,7 +120,7 @@ class StructureResponse {
   }
   /// The increment of such a step without contacts.
   [[nodiscard]] Eigen::VectorXd increment(const LinearMotion& motion, const Eigen::VectorXd& load) const;
-  /// What begin_step() reads of stiffness and damping [bytes].
+  /// What begin_step() reads of stiffness and damping [bytes]. Not at rest.
   [[nodiscard]] std::size_t load_bytes() const noexcept;
 
   /// Memory of a run's operator [bytes]. Those of compliances are counted, not made.
@@ -127,9 +128,9 @@ class StructureResponse {
     double shared = 0.0;  ///< matrices, once for steps of all sizes
     double kept = 0.0;    ///< factor and what begin_step() reads besides
     double setup = 0.0;   ///< besides that while the factor is made
-    double low = 0.0;     ///< the factor that compliances come from, with its solver
+    double low = 0.0;     ///< the largest factor that compliances come from, with its solver
     double low_setup = 0.0;
-    double low_entries = 0.0;
+    double low_entries = 0.0, low_unknowns = 0.0;  ///< of all of them
   };
   [[nodiscard]] Memory memory() const;
   /// What there is now of factors, products and compliances [bytes].
@@ -178,7 +179,7 @@ class StructureResponse {
 
   using Sparse = StepMatrices::Sparse;
   /// Of the effective matrix as it is.
-  [[nodiscard]] std::unique_ptr<SparseLdlt> natural_factor(const DofRange& dofs) const;
+  [[nodiscard]] std::unique_ptr<SparseLdlt> undivided_factor(const DofRange& dofs, EliminationOrder order) const;
   /// The factor in sections of the active unknowns; null where its rounding would show.
   [[nodiscard]] std::unique_ptr<SubstitutionFactor> accurate_sections(
       const Sparse& effective, const std::shared_ptr<const SectionLayout>& layout) const;
@@ -188,7 +189,7 @@ class StructureResponse {
 
   HhtScheme scheme_{};
   WeightedPredictor predictor_{scheme_};
-  const StructureModel& structure_;
+  SharedStructure structure_;
   std::shared_ptr<const StepMatrices> matrices_;  ///< null at rest
   bool divisible_ = false;                        ///< not, either, where a factor in sections was not accurate
   std::unique_ptr<SubstitutionFactor> factor_;
@@ -206,17 +207,17 @@ class StructureResponse {
   [[nodiscard]] const PairedProduct& paired_product() const noexcept {
     return own_product_.empty() ? matrices_->product() : own_product_;
   }
-  [[nodiscard]] EliminationOrder order_of(const DofRange& dofs) const noexcept;
-  [[nodiscard]] bool factor_is_whole() const noexcept;
-  /// Compliances come from the factor of the steps where that is of all unknowns, else from one of the stretch of line
-  /// that a node stands on, with some track before and behind it: what a compliance is to the last bit depends on the
-  /// place alone.
-  [[nodiscard]] const SubstitutionFactor& factor_near(double x, double reach);
+  [[nodiscard]] EliminationOrder order_of_steps() const noexcept;
+  [[nodiscard]] bool steps_give_compliances() const noexcept;
+  /// Compliances come from the factor of the steps where that is always of all unknowns, else from one of the stretch
+  /// of line that a node stands on, with some track before and behind it: what a compliance is to the last bit depends
+  /// on the place alone. @param reach from the node to the farthest unknown that is asked for [m]
+  [[nodiscard]] const SubstitutionFactor& compliance_factor(double x, double reach);
   [[nodiscard]] int stretches() const noexcept;
   [[nodiscard]] int stretch_at(double x) const noexcept;
   [[nodiscard]] DofRange dofs_of_stretch(int stretch, double reach) const;
-  std::unique_ptr<SparseLdlt> near_;  ///< made when first needed
-  int near_stretch_ = -1;
+  std::unique_ptr<SparseLdlt> of_stretch_;  ///< made when first needed
+  int stretch_ = -1;
   struct FewEntries;
   std::unique_ptr<FewEntries> few_;
   bool at_rest_ = false;

@@ -1,7 +1,6 @@
 #include "railtab/runtime/vsi/structure_store.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <span>
 
 #include "railtab/runtime/vsi/operator_room.hpp"
@@ -34,11 +33,11 @@ bool equal(const StructureModel& a, const StructureModel& b) {
 }  // namespace
 
 void StructureStore::take_up(const SharedStructure& structure) {
-  if (last_ == structure) return;
+  if (last_.lock() == structure) return;
   if (!structure_ || !equal(*structure_, *structure)) {
     at_rest_.reset();
     of_steps_.clear();
-    matrices_.reset();
+    matrices_ = {};
     structure_ = structure;
   }
   last_ = structure;
@@ -46,23 +45,25 @@ void StructureStore::take_up(const SharedStructure& structure) {
 
 std::shared_ptr<StructureResponse> StructureStore::at_rest(const SharedStructure& structure) {
   take_up(structure);
-  if (!at_rest_) at_rest_ = std::make_shared<StructureResponse>(*structure_);
+  if (!at_rest_) at_rest_ = std::make_shared<StructureResponse>(structure_);
   return at_rest_;
 }
 
 std::shared_ptr<StructureResponse> StructureStore::of_steps(const SharedStructure& structure, const HhtScheme& scheme,
                                                             const DofRange& active) {
   take_up(structure);
+  const bool all = active.count == structure->dofs();
   const auto found = std::find_if(of_steps_.begin(), of_steps_.end(), [&](const OfSteps& kept) {
-    return kept.alpha == scheme.alpha && kept.time_step == scheme.time_step;
+    return kept.alpha == scheme.alpha && kept.time_step == scheme.time_step && kept.all_active == all;
   });
   if (found == of_steps_.end()) {
     OperatorRoom room;
     for (const OfSteps& kept : of_steps_) room.add(static_cast<double>(kept.response->bytes()));
     if (!room.for_another()) of_steps_.erase(of_steps_.begin());
-    if (!matrices_) matrices_ = std::make_shared<StepMatrices>(*structure_, active.count == structure_->dofs());
+    std::shared_ptr<const StepMatrices>& matrices = matrices_[all ? 1 : 0];
+    if (!matrices) matrices = std::make_shared<const StepMatrices>(structure_, all);
     of_steps_.push_back(
-        {scheme.alpha, scheme.time_step, std::make_shared<StructureResponse>(matrices_, scheme, active)});
+        {scheme.alpha, scheme.time_step, all, std::make_shared<StructureResponse>(matrices, scheme, active)});
     of_steps_.back().response->keep_for_later_runs();
   } else {
     std::rotate(found, found + 1, of_steps_.end());

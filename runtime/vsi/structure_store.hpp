@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -22,12 +23,13 @@ class StructureStore {
   /// Forgets everything where the structure is another.
   void take_up(const SharedStructure& structure);
 
-  /// Those that responses refer to, and those of the last call, which are equal to them.
-  SharedStructure structure_, last_;
-  std::shared_ptr<const StepMatrices> matrices_;
+  SharedStructure structure_;
+  std::weak_ptr<const StructureModel> last_;                     ///< of the last call, equal to it
+  std::array<std::shared_ptr<const StepMatrices>, 2> matrices_;  ///< of windows; of steps with all unknowns
   std::shared_ptr<StructureResponse> at_rest_;
   struct OfSteps {
     double alpha, time_step;
+    bool all_active;
     std::shared_ptr<StructureResponse> response;
   };
   std::vector<OfSteps> of_steps_;  ///< last used last

@@ -72,7 +72,7 @@ if iscell(offsets)
 elseif numel(cars) == 1
   offsets = offsets(:)';
 end
-h = hd = hdd = {};
+rough = {};
 names = {"h_m", "hd_mps", "hdd_mps2"};
 for i = 1:3
   rough{i} = roughness(fullfile(folder, ["wheel_irregularity_", names{i}, ".csv.gz"]), ran.num_t, 4 * numel(cars));
