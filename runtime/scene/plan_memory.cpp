@@ -109,7 +109,8 @@ PlannedMemory planned_memory(const SceneParameters& scene, const VsiModel& model
   const StructureResponse::Memory m = response.memory(), at_rest = StructureResponse(s).memory();
   const double table = StepOperators::largest_table(model, response, duration, integration.time_step);
   const double one = m.kept + m.low + table;
-  const double while_made = m.shared + m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table));
+  const double while_made =
+      m.shared + std::max(m.shared_setup, m.kept + std::max(m.setup, m.low + std::max(m.low_setup, table)));
   const double start = number * n * start_vectors + at_rest.kept + at_rest.setup;
   const double vectors = number * n * (step_vectors + (scene.output.energy ? energy_vectors : 0.0)) + results.memory;
   const double pieces = number * n < small ? std::min(most_pieces, number * n * start_vectors) : 0.0;

@@ -241,7 +241,10 @@ std::unique_ptr<SparseLdlt> StructureResponse::undivided_factor(const DofRange& 
   const auto make = [&](const Sparse& matrix) {
     return std::make_unique<SparseLdlt>(matrix, dofs, not_positive_definite, order, structure_->dof_node);
   };
-  return at_rest_ ? make(structure_->stiffness) : make(effective_matrix(*structure_, scheme_, dofs));
+  if (at_rest_) return make(structure_->stiffness);
+  Sparse effective = effective_matrix(*structure_, scheme_, dofs);
+  effective.data().squeeze();  // a sum of sparse matrices may have room for twice its entries
+  return make(effective);
 }
 
 // The rounding of the sections' factor to single precision acts as an added mass of either sign, up to 6e-8 of a
@@ -359,16 +362,20 @@ std::size_t StructureResponse::bytes() const noexcept {
 }
 
 StructureResponse::Memory StructureResponse::memory() const {
-  constexpr double room = 2.0;  // of what a sum of sparse matrices may take for its entries
   const auto n = static_cast<double>(dofs_);
   const auto undivided = [&](const DofRange& dofs, EliminationOrder order) {
     const Sparse matrix = at_rest_ ? structure_->stiffness : effective_matrix(*structure_, scheme_, dofs);
-    const double entries = room * (sizeof(double) + sizeof(int)) * static_cast<double>(matrix.nonZeros());
+    const double entries = (sizeof(double) + sizeof(int)) * static_cast<double>(matrix.nonZeros());
     return std::pair(SparseLdlt::memory(matrix, dofs, order, structure_->dof_node),
                      at_rest_ ? 0.0 : entries + sizeof(int) * n);
   };
   Memory memory;
-  memory.shared = matrices_ ? static_cast<double>(matrices_->bytes()) : 0.0;
+  if (matrices_) {
+    // Of a matrix by sums and differences: its entries as triplets, and transposed.
+    constexpr double per_entry = 2.0 * sizeof(int) + sizeof(double) + sizeof(int) + sizeof(double);
+    memory.shared = static_cast<double>(matrices_->bytes());
+    memory.shared_setup = per_entry * static_cast<double>(structure_->stiffness.nonZeros());
+  }
   memory.kept = static_cast<double>(factor_->stored_bytes() + own_product_.bytes()) +
                 static_cast<double>(product_ ? product_->bytes() : 0);
   memory.low = 6.0 * sizeof(double) * n;  // vectors of a substitution
@@ -394,8 +401,7 @@ StructureResponse::Memory StructureResponse::memory() const {
   if (product_) {
     // An estimate of what the division into sections works on beside the matrix: copies of the pattern, or its entries
     // and the factor's, twice as wide until they are stored, beside the factor.
-    const double entries = matrix / room;
-    memory.setup = matrix + std::max(3.5 * entries, entries + 2.0 * static_cast<double>(factor_->bytes()));
+    memory.setup = 2.0 * matrix + std::max(3.5 * matrix, matrix + 2.0 * static_cast<double>(factor_->bytes()));
   } else {
     memory.setup = matrix + static_cast<double>(factor.made);
   }

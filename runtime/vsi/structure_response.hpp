@@ -125,10 +125,11 @@ class StructureResponse {
 
   /// Memory of a run's operator [bytes]. Those of compliances are counted, not made.
   struct Memory {
-    double shared = 0.0;  ///< matrices, once for steps of all sizes
-    double kept = 0.0;    ///< factor and what begin_step() reads besides
-    double setup = 0.0;   ///< besides that while the factor is made
-    double low = 0.0;     ///< the largest factor that compliances come from, with its solver
+    double shared = 0.0;        ///< matrices, once for steps of all sizes
+    double shared_setup = 0.0;  ///< besides that while they are made
+    double kept = 0.0;          ///< factor and what begin_step() reads besides
+    double setup = 0.0;         ///< besides that while the factor is made
+    double low = 0.0;           ///< the largest factor that compliances come from, with its solver
     double low_setup = 0.0;
     double low_entries = 0.0, low_unknowns = 0.0;  ///< of all of them
   };
