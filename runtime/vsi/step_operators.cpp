@@ -26,12 +26,8 @@ StepOperators::StepOperators(const VsiModel& model, const HhtScheme& hht, std::s
   respond_to_elements(model);
   if (!model.structure) return;
   const DofRange active{0, model.window ? 0 : model.structure->dofs()};  // a window is placed by update_for_time()
-  if (model.store) {
-    structure = model.store->of_steps(model.structure, hht, active);
-  } else {
-    if (!matrices) matrices = std::make_shared<StepMatrices>(model.structure, !model.window);
-    structure = std::make_shared<StructureResponse>(std::move(matrices), hht, active);
-  }
+  structure = model.store ? model.store->of_steps(model.structure, hht, active)
+                          : std::make_shared<StructureResponse>(std::move(matrices), hht, active);
 }
 
 void StepOperators::respond_to_elements(const VsiModel& model) {

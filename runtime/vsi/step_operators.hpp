@@ -23,7 +23,7 @@ class StepOperators {
   std::optional<RigidWheelResponse> rigid_wheels;  ///< for NormalContact::rigid
 
   /// @param matrices of the model's structure; null on rigid track, and where the model has a store
-  StepOperators(const VsiModel& model, const HhtScheme& hht, std::shared_ptr<const StepMatrices> matrices = nullptr);
+  StepOperators(const VsiModel& model, const HhtScheme& hht, std::shared_ptr<const StepMatrices> matrices);
 
   /// For a step that ends at `time`: moves the table of the rails' compliance with the train, so that it covers the
   /// train up to there and some way ahead, takes the vehicle's gyroscopic terms at the speed there, and activates the

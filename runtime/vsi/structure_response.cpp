@@ -346,11 +346,15 @@ const SubstitutionFactor& StructureResponse::compliance_factor(double x, double 
   return *of_stretch_;
 }
 
+std::size_t StructureResponse::few_bytes() const noexcept {
+  constexpr std::size_t vectors = 6;  // load and displacement, and those of the substitution
+  return vectors * sizeof(double) * static_cast<std::size_t>(dofs_);
+}
+
 std::size_t StructureResponse::bytes() const noexcept {
-  constexpr std::size_t vectors = 6;  // of a substitution for few entries
   std::size_t sum = own_product_.bytes() + (factor_ ? factor_->stored_bytes() : 0) +
                     (product_ ? product_->bytes() : 0) + (of_stretch_ ? of_stretch_->stored_bytes() : 0) +
-                    (few_ ? vectors * sizeof(double) * static_cast<std::size_t>(dofs_) : 0);
+                    (few_ ? few_bytes() : 0);
   for (const Kept& kept : kept_) sum += kept.bytes;
   for (const std::vector<Column>& columns : column_) {
     sum += columns.capacity() * sizeof(Column);
@@ -363,11 +367,17 @@ std::size_t StructureResponse::bytes() const noexcept {
 
 StructureResponse::Memory StructureResponse::memory() const {
   const auto n = static_cast<double>(dofs_);
+  const auto bytes_of = [&](const Sparse& matrix) {
+    return (sizeof(double) + sizeof(int)) * static_cast<double>(matrix.nonZeros()) + sizeof(int) * n;
+  };
+  // A factor, and the matrix that it is made of.
   const auto undivided = [&](const DofRange& dofs, EliminationOrder order) {
-    const Sparse matrix = at_rest_ ? structure_->stiffness : effective_matrix(*structure_, scheme_, dofs);
-    const double entries = (sizeof(double) + sizeof(int)) * static_cast<double>(matrix.nonZeros());
-    return std::pair(SparseLdlt::memory(matrix, dofs, order, structure_->dof_node),
-                     at_rest_ ? 0.0 : entries + sizeof(int) * n);
+    const auto factor = [&](const Sparse& matrix) {
+      return SparseLdlt::memory(matrix, dofs, order, structure_->dof_node);
+    };
+    if (at_rest_) return std::pair(factor(structure_->stiffness), 0.0);
+    const Sparse effective = effective_matrix(*structure_, scheme_, dofs);
+    return std::pair(factor(effective), bytes_of(effective));
   };
   Memory memory;
   if (matrices_) {
@@ -378,7 +388,7 @@ StructureResponse::Memory StructureResponse::memory() const {
   }
   memory.kept = static_cast<double>(factor_->stored_bytes() + own_product_.bytes()) +
                 static_cast<double>(product_ ? product_->bytes() : 0);
-  memory.low = 6.0 * sizeof(double) * n;  // vectors of a substitution
+  memory.low = static_cast<double>(few_bytes());
   if (steps_give_compliances()) {
     const auto [factor, matrix] = undivided(active_, order_of_steps());
     memory.setup = static_cast<double>(factor.made) + matrix;
@@ -397,12 +407,13 @@ StructureResponse::Memory StructureResponse::memory() const {
     memory.low_unknowns += static_cast<double>(dofs.count);
   }
   memory.low += stored;
-  const auto [factor, matrix] = undivided(active_, order_of_steps());
   if (product_) {
+    const double matrix = bytes_of(effective_matrix(*structure_, scheme_, active_));
     // An estimate of what the division into sections works on beside the matrix: copies of the pattern, or its entries
     // and the factor's, twice as wide until they are stored, beside the factor.
     memory.setup = 2.0 * matrix + std::max(3.5 * matrix, matrix + 2.0 * static_cast<double>(factor_->bytes()));
   } else {
+    const auto [factor, matrix] = undivided(active_, order_of_steps());
     memory.setup = matrix + static_cast<double>(factor.made);
   }
   return memory;

@@ -220,6 +220,7 @@ class StructureResponse {
   std::unique_ptr<SparseLdlt> of_stretch_;  ///< made when first needed
   int stretch_ = -1;
   struct FewEntries;
+  [[nodiscard]] std::size_t few_bytes() const noexcept;
   std::unique_ptr<FewEntries> few_;
   bool at_rest_ = false;
   Eigen::Index dofs_ = 0;

@@ -51,7 +51,6 @@ for number, car in enumerate(cars):
     M_v[range(at, at + 6), range(at, at + 6)] = [car["Body"]["m"], car["Body"]["I"], bogies["m"][0], bogies["I"][0],
                                                 bogies["m"][1], bogies["I"][1]]
     load_v[[at, at + 2, at + 4]] = g * M_v[[at, at + 2, at + 4], [at, at + 2, at + 4]]
-    springs = [(4 * number + w, {}, car["Susp"]["Prim"], w) for w in range(4)]
     first = axles[4 * number]
     half = 0.5 * (axles[4 * number + 2] - first)  # between the bogies
     for b in range(2):
