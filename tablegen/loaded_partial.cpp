@@ -145,8 +145,12 @@ void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOption
   const std::string wanted = request(table, options, provenance.program_version);
   LoadedColumnStore store{.known = earlier_columns(partial, wanted), .keep = {}};
   std::optional<ArrayFileWriter> out;
+  if (!store.known.empty()) {  // the earlier file itself goes on: at no moment does a kill find fewer columns
+    out.emplace(ArrayFileWriter::reopen(partial, filetype, format_version));
+    out->truncate(store.known.size());
+  }
   auto flushed = std::chrono::steady_clock::now();
-  const auto append = [&](const LoadedSweepColumn& column) {
+  store.keep = [&](const LoadedSweepColumn& column) {
     const std::vector<double> row = row_of(column);
     if (!out) {
       out.emplace(partial, filetype, format_version, ArrayFileWriter::Mode::growing);
@@ -159,9 +163,6 @@ void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOption
     out->flush();
     flushed = now;
   };
-  for (const LoadedSweepColumn& column : store.known) append(column);
-  if (out) out->flush();  // in the place of the earlier file, with all that it held
-  store.keep = append;
   table.loaded = sweep_loaded(contact.search(), options, std::move(store), progress);
   certify(contact.search(), options, *table.loaded);
   if (array_file_checksum(file) != made_of) {
