@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <cstring>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -11,27 +13,21 @@
 #include "railtab/runtime/algebra/multifrontal.hpp"
 #include "railtab/runtime/base/index.hpp"
 #include "railtab/runtime/base/input_error.hpp"
+#include "railtab/runtime/base/lane_numbers.hpp"
 
 namespace railtab {
+
+/// A block's numbers in the order in which its substitution reads them: of a narrow one the strict triangle row by
+/// row, then the rows below; of one by itself four of every column at a time.
+struct NarrowBlock {
+  const double* value;
+  const int* row;
+  int below;
+};
 
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
-
-// Blocks in an order in which none waits for the one before it: leaves of the elimination tree first, then what hangs
-// on leaves only, and so on; of these, equal ones follow each other, for which a processor predicts branches rightly.
-std::vector<int> by_height(const EliminationTree& tree) {
-  std::vector<int> height(tree.parent.size(), 0), order(tree.parent.size());
-  std::iota(order.begin(), order.end(), 0);
-  for (const int b : order) {
-    if (tree.parent[index(b)] < 0) continue;
-    int& parent = height[index(tree.parent[index(b)])];
-    parent = std::max(parent, height[index(b)] + 1);
-  }
-  const auto key = [&](int b) { return std::tuple(height[index(b)], tree.columns(b), tree.rows(b).size()); };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
-  return order;
-}
 
 // Rows are taken four at a time; what lacks to a multiple of four is stored as zeros in a row that nobody reads.
 int in_fours(int rows) { return (rows + 3) & ~3; }
@@ -44,16 +40,8 @@ constexpr int narrow = 8;
 // Where the rows below a narrow block's triangle begin.
 constexpr int triangle_room(int columns) { return (columns * (columns - 1) / 2 + 3) & ~3; }
 
-/// A block's numbers in the order in which its substitution reads them: of a narrow one the strict triangle row by
-/// row, then the rows below, four of every column at a time.
-struct NarrowBlock {
-  const double* value;
-  const int* row;
-  int below;
-};
-
 template <int n>
-void narrow_forward(const NarrowBlock& block, double* own, double* y) noexcept {
+void forward_narrow(const NarrowBlock& block, double* own, double* y) noexcept {
   if constexpr (n == 1) {
     for (int i = 0; i < block.below; ++i) y[block.row[i]] -= block.value[i] * *own;
     return;
@@ -76,7 +64,7 @@ void narrow_forward(const NarrowBlock& block, double* own, double* y) noexcept {
 
 /// @param inverse_D of the block's columns @param y where they stand in L⁻¹ of the load; own may be the same
 template <int n>
-void narrow_backward(const NarrowBlock& block, const double* inverse_D, const double* y, double* own,
+void backward_narrow(const NarrowBlock& block, const double* inverse_D, const double* y, double* own,
                      const double* x) noexcept {
   if constexpr (n == 1) {
     double sum = *y * *inverse_D;
@@ -104,6 +92,104 @@ void narrow_backward(const NarrowBlock& block, const double* inverse_D, const do
   std::copy(solved.begin(), solved.end(), own);
 }
 
+// The rows `row` of a vector.
+template <int count>
+SideBySide<count> gathered(const double* x, const int* row) noexcept {
+  using V = SideBySide<count>;
+  V at;
+  for (int r = 0; r < V::registers; ++r, row += V::width) {
+    // Number by number into an array, a register would have to wait for the memory.
+    if constexpr (V::width == 8) {
+      at.part[r] =
+          typename V::Register{x[row[0]], x[row[1]], x[row[2]], x[row[3]], x[row[4]], x[row[5]], x[row[6]], x[row[7]]};
+    } else if constexpr (V::width == 4) {
+      at.part[r] = typename V::Register{x[row[0]], x[row[1]], x[row[2]], x[row[3]]};
+    } else {
+      at.part[r] = typename V::Register{x[row[0]], x[row[1]]};
+    }
+  }
+  return at;
+}
+
+template <int count>
+SideBySide<count> loaded(const double* from) noexcept {
+  SideBySide<count> numbers;
+  std::memcpy(&numbers, from, sizeof numbers);
+  return numbers;
+}
+
+/// Of `count` blocks with n columns each side by side: numbers, rows and columns of the first, those of the others
+/// beside them.
+template <int n, int count>
+void forward_side_by_side(const NarrowBlock& block, double* own, double* y) noexcept {
+  SideBySide<count> old[n];
+  for (int k = 0; k < n; ++k) old[k] = loaded<count>(own + count * k);
+  const double* value = block.value;
+  for (int j = 1; j < n; ++j) {
+    SideBySide<count> sum = old[j];
+    for (int k = 0; k < j; ++k, value += count) sum += loaded<count>(value) * old[k];
+    std::memcpy(own + count * j, &sum, sizeof sum);
+  }
+  const int* row = block.row;
+  for (int i = 0; i < block.below; ++i, row += count) {
+    SideBySide<count> change = loaded<count>(value) * old[0];
+    value += count;
+    for (int k = 1; k < n; ++k, value += count) change += loaded<count>(value) * old[k];
+    for (int b = 0; b < count; ++b) y[row[b]] -= change[b];  // several blocks may have the same row
+  }
+}
+
+template <int n, int count>
+void backward_side_by_side(const NarrowBlock& block, const double* inverse_D, const double* y, double* own,
+                           const double* x) noexcept {
+  SideBySide<count> known[n], solved[n];
+  for (int k = 0; k < n; ++k) {
+    solved[k] = known[k] = loaded<count>(y + count * k) * loaded<count>(inverse_D + count * k);
+  }
+  const double* value = block.value + count * (n * (n - 1) / 2);
+  const int* row = block.row;
+  for (int i = 0; i < block.below; ++i, row += count) {
+    const SideBySide<count> part = gathered<count>(x, row);
+    for (int k = 0; k < n; ++k, value += count) solved[k] -= loaded<count>(value) * part;
+  }
+  value = block.value;
+  for (int j = 1; j < n; ++j) {
+    for (int k = 0; k < j; ++k, value += count) solved[k] += loaded<count>(value) * known[j];
+  }
+  for (int k = 0; k < n; ++k) std::memcpy(own + count * k, &solved[k], sizeof solved[k]);
+}
+
+/// One of `count` blocks side by side.
+void forward_one(const NarrowBlock& block, int n, int count, double* own, double* y) noexcept {
+  std::array<double, narrow> old;
+  for (int k = 0; k < n; ++k) old[index(k)] = own[count * k];
+  const double* value = block.value;
+  for (int j = 1; j < n; ++j) {
+    for (int k = 0; k < j; ++k, value += count) own[count * j] += *value * old[index(k)];
+  }
+  for (int i = 0; i < block.below; ++i) {
+    double change = 0.0;
+    for (int k = 0; k < n; ++k, value += count) change += *value * old[index(k)];
+    y[block.row[count * i]] -= change;
+  }
+}
+
+void backward_one(const NarrowBlock& block, int n, int count, const double* inverse_D, const double* y, double* own,
+                  const double* x) noexcept {
+  std::array<double, narrow> known, solved;
+  for (int k = 0; k < n; ++k) solved[index(k)] = known[index(k)] = y[count * k] * inverse_D[count * k];
+  const double* value = block.value + count * (n * (n - 1) / 2);
+  for (int i = 0; i < block.below; ++i) {
+    const double part = x[block.row[count * i]];
+    for (int k = 0; k < n; ++k, value += count) solved[index(k)] -= *value * part;
+  }
+  value = block.value;
+  for (int j = 1; j < n; ++j) {
+    for (int k = 0; k < j; ++k, value += count) solved[index(k)] += *value * known[index(j)];
+  }
+  for (int k = 0; k < n; ++k) own[count * k] = solved[index(k)];
+}
+
 /// Calls visitor.operator()<columns>(). @pre 1 <= columns <= narrow
 template <class Visitor>
 void with_columns(int columns, Visitor&& visitor) {
@@ -127,9 +213,66 @@ void add_columns(const double* column, int height, int begin, const double* fact
 }
 
 // Numbers of a block, see SparseLdlt::store().
-std::size_t numbers_of(int columns, int below) {
+std::size_t numbers_of(int columns, int below, int together) {
+  if (together > 1) return index(columns * (columns - 1) / 2 + below * columns);
   return index(columns > narrow ? in_fours(columns + below) * columns
                                 : triangle_room(columns) + in_fours(below) * columns);
+}
+
+// Row numbers that a block stores.
+int rows_of(int below, int together) { return together > 1 ? below : in_fours(below); }
+
+/// Blocks in the order in which they are substituted in.
+struct Sequence {
+  std::vector<int> block;
+  std::vector<int> together;  ///< of each of them: how many it is taken side by side with
+};
+
+// Blocks in an order in which none waits for the one before it: leaves of the elimination tree first, then what hangs
+// on leaves only, and so on. Of these, equal ones follow each other, narrow ones in eights and fours side by side.
+Sequence by_height(const EliminationTree& tree) {
+  std::vector<int> height(tree.parent.size(), 0);
+  Sequence sequence{std::vector<int>(tree.parent.size()), {}};
+  std::vector<int>& order = sequence.block;
+  std::iota(order.begin(), order.end(), 0);
+  for (const int b : order) {
+    if (tree.parent[index(b)] < 0) continue;
+    int& parent = height[index(tree.parent[index(b)])];
+    parent = std::max(parent, height[index(b)] + 1);
+  }
+  const auto key = [&](int b) { return std::tuple(height[index(b)], tree.columns(b), tree.rows(b).size()); };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  for (auto first = order.begin(); first != order.end();) {
+    const auto last = std::find_if(first, order.end(), [&](int b) { return key(b) != key(*first); });
+    for (auto left = last - first; left > 0;) {
+      const int together = tree.columns(*first) > narrow || left < 4 ? 1 : left < 8 ? 4 : 8;
+      sequence.together.insert(sequence.together.end(), index(together), together);
+      left -= together;
+    }
+    first = last;
+  }
+  return sequence;
+}
+
+/// Numbers of rows and values.
+struct Room {
+  std::size_t rows = 0, values = 0;
+};
+
+/// Calls visitor(at, room) for the first of blocks side by side: its place in the sequence, and where rows and values
+/// of them all begin. @return what is needed for all
+template <class Visitor>
+Room assign_room(const EliminationTree& tree, const Sequence& sequence, Visitor&& visitor) {
+  Room room;
+  for (std::size_t at = 0; at < sequence.block.size(); at += index(sequence.together[at])) {
+    const int together = sequence.together[at], columns = tree.columns(sequence.block[at]);
+    const auto below = static_cast<int>(tree.rows(sequence.block[at]).size());
+    if (together > 1) room.values = (room.values + 7) & ~std::size_t{7};  // to a line of the cache
+    visitor(at, std::as_const(room));
+    room.rows += index(together * rows_of(below, together));
+    room.values += index(together) * numbers_of(columns, below, together);
+  }
+  return room;
 }
 
 /// result <- columnsᵀ · vector, from row `begin` on.
@@ -162,12 +305,11 @@ SparseLdlt::SparseLdlt(const Sparse& matrix, const DofRange& range, std::string_
 SparseLdlt::Memory SparseLdlt::memory(const Sparse& matrix, const DofRange& range, EliminationOrder order,
                                       std::span<const int> node) {
   const EliminationTree tree(matrix, range, elimination_order(matrix, range, order, node));
+  const auto [rows, values] = assign_room(tree, by_height(tree), [](std::size_t, const Room&) {});
   const std::size_t n = tree.unknown.size(), blocks = tree.parent.size(), nonzeros = matrix.nonZeros();
-  Memory memory{.stored = blocks * sizeof(Block) + n * (2 * sizeof(int) + sizeof(double)), .entries = tree.entries};
-  for (int b = 0; b < tree.blocks(); ++b) {
-    const auto below = static_cast<int>(tree.rows(b).size());
-    memory.stored += index(in_fours(below)) * sizeof(int) + numbers_of(tree.columns(b), below) * sizeof(double);
-  }
+  Memory memory{.stored = blocks * sizeof(Block) + n * (2 * sizeof(int) + sizeof(double)) + rows * sizeof(int) +
+                          values * sizeof(double),
+                .entries = tree.entries};
   // METIS works on six copies of the pattern, Eigen's minimum degree on 13.
   const std::size_t patterns = order == EliminationOrder::nested_dissection ? 6 : 13;
   const std::size_t of_tree = (tree.row.size() + 8 * n) * sizeof(int) + blocks * sizeof(std::size_t);
@@ -179,38 +321,57 @@ SparseLdlt::Memory SparseLdlt::memory(const Sparse& matrix, const DofRange& rang
 // Everything but the numbers. @return where each block of the tree is in blocks_
 std::vector<int> SparseLdlt::place(const EliminationTree& tree) {
   const int n = tree.size();
+  const Sequence sequence = by_height(tree);
+  std::vector<int> place_of(index(n)), stored_at(tree.parent.size());  // of a column, of a block of the tree
+  blocks_.resize(tree.parent.size());
+  block_of_.resize(index(n));
+  int next = 0;
+  for (const int together : {8, 4, 1}) {  // those side by side begin at lines of the cache
+    for (std::size_t at = 0; at < blocks_.size(); at += index(sequence.together[at])) {
+      if (sequence.together[at] != together) continue;
+      const int columns = tree.columns(sequence.block[at]);
+      for (int k = 0; k < together; ++k) {
+        const std::size_t stored = at + index(k);
+        const int b = sequence.block[stored];
+        blocks_[stored] = {next + k, columns, static_cast<int>(tree.rows(b).size()), 0, 0, -1, together};
+        stored_at[index(b)] = static_cast<int>(stored);
+        for (int j = 0; j < columns; ++j) {
+          const int place = blocks_[stored].column(j);
+          place_of[index(tree.first[index(b)] + j)] = place;
+          block_of_[index(place)] = static_cast<int>(stored);
+        }
+      }
+      next += together * columns;
+    }
+  }
   position_ = tree.position;
+  for (int& position : position_) position = place_of[index(position)];
+  const Room room = assign_room(tree, sequence, [&](std::size_t at, const Room& begin) {
+    for (int k = 0; k < sequence.together[at]; ++k) {
+      blocks_[at + index(k)].rows = static_cast<int>(begin.rows) + k;
+      blocks_[at + index(k)].value = begin.values + index(k);
+    }
+  });
+  rows_.assign(room.rows, n);
+  values_.setZero(static_cast<Eigen::Index>(room.values));
   inverse_D_.resize(n);
-  block_of_.resize(position_.size());
-  std::vector<int> stored_at(tree.parent.size());
-  const std::vector<int> order = by_height(tree);
-  std::size_t rows = 0, values = 0;
-  for (const int b : order) rows += index(in_fours(static_cast<int>(tree.rows(b).size())));
-  rows_.reserve(rows);
-  blocks_.reserve(order.size());
-  for (const int b : order) {
-    const std::span<const int> below = tree.rows(b);
-    const Block block{tree.first[index(b)],           tree.columns(b), static_cast<int>(below.size()),
-                      static_cast<int>(rows_.size()), values,          -1};
-    rows_.insert(rows_.end(), below.begin(), below.end());
-    rows_.resize(static_cast<std::size_t>(block.rows + in_fours(block.below)), n);
-    values += numbers_of(block.columns, block.below);
-    if (block.columns > narrow) most_height_ = std::max(most_height_, in_fours(block.columns + block.below));
-    stored_at[index(b)] = static_cast<int>(blocks_.size());
-    for (int j = 0; j < block.columns; ++j) block_of_[index(block.first + j)] = stored_at[index(b)];
-    blocks_.push_back(block);
-  }
-  for (Block& block : blocks_) {
+  for (std::size_t at = 0; at < blocks_.size(); ++at) {
+    Block& block = blocks_[at];
+    int* row = rows_.data() + block.rows;
+    for (const int below : tree.rows(sequence.block[at])) {
+      *row = place_of[index(below)];
+      row += block.together;
+    }
     if (block.below > 0) block.parent = block_of_[index(rows_[index(block.rows)])];
+    if (block.columns > narrow) most_height_ = std::max(most_height_, in_fours(block.columns + block.below));
   }
-  values_.resize(values);
   return stored_at;
 }
 
 // The block's numbers as its substitution reads them.
 void SparseLdlt::store(const Block& block, const EliminatedBlock& from) {
   const int n = block.columns;
-  inverse_D_.segment(block.first, n) = from.D.cwiseInverse();
+  for (int j = 0; j < n; ++j) inverse_D_[block.column(j)] = 1.0 / from.D[j];
   double* to = values_.data() + block.value;
   if (n > narrow) {
     Eigen::Map<Eigen::MatrixXd> dense(to, in_fours(n + block.below), n);
@@ -219,7 +380,13 @@ void SparseLdlt::store(const Block& block, const EliminatedBlock& from) {
     return;
   }
   for (int j = 1; j < n; ++j) {
-    for (int k = 0; k < j; ++k) *to++ = from.inverse(j, k);
+    for (int k = 0; k < j; ++k, to += block.together) *to = from.inverse(j, k);
+  }
+  if (block.together > 1) {
+    for (int i = 0; i < block.below; ++i) {
+      for (int k = 0; k < n; ++k, to += block.together) *to = from.below(i, k);
+    }
+    return;
   }
   double* const below = values_.data() + block.value + triangle_room(n);
   for (int i = 0; i < block.below; ++i) {
@@ -228,7 +395,8 @@ void SparseLdlt::store(const Block& block, const EliminatedBlock& from) {
 }
 
 std::size_t SparseLdlt::bytes() const noexcept {
-  return values_.size() * sizeof(double) + rows_.size() * sizeof(int) + blocks_.size() * sizeof(Block);
+  return static_cast<std::size_t>(values_.size()) * sizeof(double) + rows_.size() * sizeof(int) +
+         blocks_.size() * sizeof(Block);
 }
 
 std::size_t SparseLdlt::stored_bytes() const noexcept {
@@ -270,7 +438,10 @@ void SparseLdlt::out_of(const Vector& ordered, Vector& natural) const {
 
 void SparseLdlt::load(const Path& path, std::span<const int> few, double weight, const Vector& natural,
                       Vector& ordered) const {
-  visit(path, [&](int first, int columns) { ordered.segment(first, columns).setZero(); });
+  for (const int b : path.nodes()) {
+    const Block& block = blocks_[index(b)];
+    for (int j = 0; j < block.columns; ++j) ordered[block.column(j)] = 0.0;
+  }
   for (int unknown : few) ordered[position(unknown)] = weight * natural[unknown];
 }
 
@@ -278,12 +449,16 @@ void SparseLdlt::read(std::span<const int> few, const Vector& ordered, Vector& n
   for (int unknown : few) natural[unknown] = ordered[position(unknown)];
 }
 
+NarrowBlock SparseLdlt::narrow_block(const Block& block) const noexcept {
+  return {values_.data() + block.value, rows_.data() + block.rows, block.below};
+}
+
 void SparseLdlt::forward(double* y, const Block& block) const {
   double* const own = y + block.first;
   if (block.columns <= narrow) {
-    const NarrowBlock numbers{values_.data() + block.value, rows_.data() + block.rows, block.below};
-    with_columns(block.columns, [&]<int n>() { narrow_forward<n>(numbers, own, y); });
-    return;
+    const NarrowBlock numbers = narrow_block(block);
+    if (block.together > 1) return forward_one(numbers, block.columns, block.together, own, y);
+    return with_columns(block.columns, [&]<int n>() { forward_narrow<n>(numbers, own, y); });
   }
   const int height = in_fours(block.columns + block.below);
   double* const scratch = work_space(y);
@@ -302,9 +477,9 @@ void SparseLdlt::backward(const double* y, double* x, const Block& block) const 
   double* const own = x + block.first;
   const double *const inverse_D = inverse_D_.data() + block.first, *const load = y + block.first;
   if (block.columns <= narrow) {
-    const NarrowBlock numbers{values_.data() + block.value, rows_.data() + block.rows, block.below};
-    with_columns(block.columns, [&]<int n>() { narrow_backward<n>(numbers, inverse_D, load, own, x); });
-    return;
+    const NarrowBlock numbers = narrow_block(block);
+    if (block.together > 1) return backward_one(numbers, block.columns, block.together, inverse_D, load, own, x);
+    return with_columns(block.columns, [&]<int n>() { backward_narrow<n>(numbers, inverse_D, load, own, x); });
   }
   const int height = in_fours(block.columns + block.below);
   const int* const row = rows_.data() + block.rows;
@@ -319,12 +494,35 @@ void SparseLdlt::backward(const double* y, double* x, const Block& block) const 
   for (; k < block.columns; ++k) products<1>(value + k * height, height, k & ~3, scratch, own + k);
 }
 
+void SparseLdlt::forward_together(double* y, const Block& block) const {
+  if (block.together == 1) return forward(y, block);
+  const NarrowBlock numbers = narrow_block(block);
+  double* const own = y + block.first;
+  with_columns(block.columns, [&]<int n>() {
+    block.together == 8 ? forward_side_by_side<n, 8>(numbers, own, y) : forward_side_by_side<n, 4>(numbers, own, y);
+  });
+}
+
+void SparseLdlt::backward_together(const double* y, double* x, const Block& block) const {
+  if (block.together == 1) return backward(y, x, block);
+  const NarrowBlock numbers = narrow_block(block);
+  const double *const inverse_D = inverse_D_.data() + block.first, *const load = y + block.first;
+  double* const own = x + block.first;
+  with_columns(block.columns, [&]<int n>() {
+    block.together == 8 ? backward_side_by_side<n, 8>(numbers, inverse_D, load, own, x)
+                        : backward_side_by_side<n, 4>(numbers, inverse_D, load, own, x);
+  });
+}
+
 void SparseLdlt::forward(double* y) const {
-  for (const Block& block : blocks_) forward(y, block);
+  for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward_together(y, blocks_[b]);
 }
 
 void SparseLdlt::backward(double* x) const {
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, x, *block);
+  for (std::size_t end = blocks_.size(); end > 0;) {
+    end -= index(blocks_[end - 1].together);
+    backward_together(x, x, blocks_[end]);
+  }
 }
 
 void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const {
@@ -332,13 +530,13 @@ void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const
   constexpr double nothing = 1e-40;
   for (int b : path.nodes()) {
     const Block& block = blocks_[static_cast<std::size_t>(b)];
-    auto own = y.segment(block.first, block.columns);
-    if ((own.cwiseAbs().array() < nothing).all()) {  // false for a NaN, which must reach the solution
-      own.setZero();
-    } else {
-      forward(y.data(), block);
+    bool fades = true;  // not for a NaN, which must reach the solution
+    for (int j = 0; j < block.columns; ++j) fades = fades && std::abs(y[block.column(j)]) < nothing;
+    if (!fades) forward(y.data(), block);
+    for (int j = 0; j < block.columns; ++j) {  // no block after this one reads them
+      const int at = block.column(j);
+      y[at] = fades ? known[at] : y[at] + known[at];
     }
-    own += known.segment(block.first, block.columns);  // no block after this one reads them
   }
 }
 
@@ -349,8 +547,24 @@ void SparseLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
 }
 
 void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
-  for (std::size_t b = blocks_.size(); b-- > 0;) {
-    if (!path.contains(static_cast<int>(b))) backward(y.data(), x.data(), blocks_[b]);
+  std::array<double, 8 * narrow> solved;  // of blocks on the path
+  const auto for_each_on_path = [&](std::size_t first, auto&& visitor) {
+    double* kept = solved.data();
+    for (std::size_t b = first; b < first + index(blocks_[first].together); ++b) {
+      if (!path.contains(static_cast<int>(b))) continue;
+      for (int j = 0; j < blocks_[b].columns; ++j) visitor(x[blocks_[b].column(j)], *kept++);
+    }
+  };
+  for (std::size_t end = blocks_.size(); end > 0;) {
+    const int together = blocks_[end - 1].together;
+    const std::size_t first = end - index(together);
+    int on_path = 0;
+    for (std::size_t b = first; b < end; ++b) on_path += path.contains(static_cast<int>(b)) ? 1 : 0;
+    end = first;
+    if (on_path == together) continue;
+    if (on_path > 0) for_each_on_path(first, [](double at, double& kept) { kept = at; });
+    backward_together(y.data(), x.data(), blocks_[first]);
+    if (on_path > 0) for_each_on_path(first, [](double& at, double kept) { at = kept; });
   }
 }
 
@@ -360,7 +574,7 @@ Eigen::Map<const Eigen::MatrixXd> SparseLdlt::wide(const Block& block) const {
 
 void SparseLdlt::forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const {
   if (block.columns <= narrow) {
-    for (Eigen::Index k = 0; k < y.cols(); ++k) forward(y.col(k).data(), block);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) forward_together(y.col(k).data(), block);
     return;
   }
   auto own = y.middleRows(block.first, block.columns);
@@ -373,7 +587,7 @@ void SparseLdlt::forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd
 
 void SparseLdlt::backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const {
   if (block.columns <= narrow) {
-    for (Eigen::Index k = 0; k < x.cols(); ++k) backward(x.col(k).data(), x.col(k).data(), block);
+    for (Eigen::Index k = 0; k < x.cols(); ++k) backward_together(x.col(k).data(), x.col(k).data(), block);
     return;
   }
   auto own = x.middleRows(block.first, block.columns);
@@ -394,8 +608,11 @@ Eigen::MatrixXd SparseLdlt::solve_columns(const Eigen::MatrixXd& loads) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
       x.row(position_[static_cast<std::size_t>(i)]) = loads.row(first_ + i).segment(first, count);
     }
-    for (const Block& block : blocks_) forward(x, block, scratch);
-    for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) backward(x, *block, scratch);
+    for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward(x, blocks_[b], scratch);
+    for (std::size_t end = blocks_.size(); end > 0;) {
+      end -= index(blocks_[end - 1].together);
+      backward(x, blocks_[end], scratch);
+    }
     for (Eigen::Index i = 0; i < size(); ++i) {
       result.row(first_ + i).segment(first, count) = x.row(position_[static_cast<std::size_t>(i)]);
     }

@@ -12,10 +12,13 @@ namespace railtab {
 
 struct EliminatedBlock;
 struct EliminationTree;
+struct NarrowBlock;
 
 /// Factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
 /// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
 /// factor's numbers and works on vectors [Davis2006, Sect. 4.8]. Where a system is long and narrow, paths are short.
+/// Blocks of equal shape of which none waits for another are substituted in side by side, as many as a vector register
+/// holds; the factor's order has their unknowns in turn.
 class SparseLdlt final : public SubstitutionFactor {
  public:
   static constexpr std::string_view not_positive_definite = "the matrix of a linear system is not positive definite";
@@ -72,24 +75,24 @@ class SparseLdlt final : public SubstitutionFactor {
 
  private:
   struct Block {
-    int first, columns;  // first column and number of columns
+    int first, columns;  // first column's place in the factor's order, and number of columns
     int below, rows;     // rows below the triangle: number, and place of the first in rows_
-    std::size_t value;   // place of the first column in values_, see there
+    std::size_t value;   // place of its first number in values_, see there
     int parent;          // block of the first row below; -1: a root
+    int together;        // blocks side by side: what is theirs stands in turn, a block's own this far apart
+
+    [[nodiscard]] int column(int j) const noexcept { return first + together * j; }
   };
-  /// Calls visitor(first, number) for the neighbouring columns of every block of a path.
-  template <class Visitor>
-  void visit(const Path& path, Visitor&& visitor) const {
-    for (int b : path.nodes()) {
-      visitor(blocks_[static_cast<std::size_t>(b)].first, blocks_[static_cast<std::size_t>(b)].columns);
-    }
-  }
+  [[nodiscard]] NarrowBlock narrow_block(const Block& block) const noexcept;
   std::vector<int> place(const EliminationTree& tree);
   void store(const Block& block, const EliminatedBlock& from);
   [[nodiscard]] double* work_space(double* ordered) const noexcept { return ordered + size() + 1; }
   void forward(double* y, const Block& block) const;
   /// @param y may be x
   void backward(const double* y, double* x, const Block& block) const;
+  /// The same of all blocks side by side with this one, the first of them.
+  void forward_together(double* y, const Block& block) const;
+  void backward_together(const double* y, double* x, const Block& block) const;
   /// The same for columns of y and x.
   void forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const;
   void backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const;
@@ -99,7 +102,7 @@ class SparseLdlt final : public SubstitutionFactor {
   std::vector<Block> blocks_;
   std::vector<int> rows_;
   /// Of every block with triangle T and rows B below it: T⁻¹ and B T⁻¹, in the order in which they are read.
-  std::vector<double> values_;
+  Vector values_;
   std::vector<int> block_of_;  // of a column
   std::vector<int> position_;  // of an unknown in the factor's order
   Vector inverse_D_;

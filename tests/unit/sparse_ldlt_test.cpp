@@ -105,6 +105,29 @@ TEST(SparseLdlt, UnconnectedUnknownsAreBlocksOfTheirOwn) {
   EXPECT_TRUE(factor.solve(Eigen::Vector3d(1.0, 2.0, 3.0)).isApprox(Eigen::Vector3d::Ones(), 1e-15));
 }
 
+// Equal blocks that hang on one: eight and four side by side, and one that is left; all act on the same rows.
+TEST(SparseLdlt, EqualBlocksActOnTheSameRows) {
+  constexpr Eigen::Index blocks = 13, columns = 2, hub = 3, n = blocks * columns + hub;
+  Eigen::MatrixXd dense = 20.0 * Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index b = 0; b < blocks; ++b) {
+    const Eigen::Index first = columns * b;
+    const double of_block = 1.0 + 0.1 * static_cast<double>(b);
+    dense(first, first + 1) = dense(first + 1, first) = of_block;
+    dense.block<columns, hub>(first, n - hub).setConstant(-of_block);
+    dense.block<hub, columns>(n - hub, first).setConstant(-of_block);
+  }
+  const SparseLdlt factor(dense.sparseView());
+  const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0);
+  const Eigen::VectorXd expected = dense.llt().solve(load);
+  EXPECT_LT(difference(factor.solve(load), expected), 1e-14);
+  EXPECT_LT(difference(factor.solve_columns(load), expected), 1e-14);
+  // Some of those side by side are on the path, some are not.
+  for (const int unknown : {0, 7, 17, 21, 25}) {
+    expect_divided_as_whole(factor, factor, {{unknown, 9}, {unknown + 1}, {}}, 1e-14);
+    expect_few_as_all(factor, n, {unknown}, {9});
+  }
+}
+
 TEST(SparseLdlt, KeepsALoadThatIsNotANumber) {
   const Eigen::SparseMatrix<double> matrix = short_track();
   expect_nan_is_kept(SparseLdlt(matrix), matrix.rows(), 700);
