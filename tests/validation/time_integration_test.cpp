@@ -7,12 +7,16 @@
 #include <complex>
 #include <cstdio>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
 #include "railtab/runtime/base/dense_solvers.hpp"
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/simple_beam.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
+#include "railtab/runtime/vsi/moving_window.hpp"
+#include "railtab/runtime/vsi/operator_levels.hpp"
+#include "railtab/runtime/vsi/operator_room.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 
 namespace railtab {
@@ -151,6 +155,51 @@ TEST(Newmark, KeepsTheEnergyOfAClosedLinearSystem) {
   }
   std::printf("energy over 100000 steps: largest relative change %.2e\n", worst);
   EXPECT_LT(worst, 1e-6);
+}
+
+// Steps of more sizes than the three that large operators leave room for: none of these small ones is made twice.
+TEST(SharedOperators, KeepStepsOfManySizes) {
+  VsiModel model = sprung_mass();
+  model.vehicle_x = {5.0};
+  TrackParameters track;
+  track.length_before = track.length_after = 9.0;
+  model.structure = share(build_track_bridge(track, {BridgeParameters{}}, MotionPlane::vertical));
+  OperatorLevels levels(model, 0.0, 1e-3);
+  const DofRange all{0, model.structure->dofs()};
+  std::vector<const SubstitutionFactor*> factor;
+  for (int level = 0; level < OperatorRoom::most; ++level) {
+    factor.push_back(&levels.update(level, 1e-3, all).structure->factor());
+  }
+  for (int level = 0; level < OperatorRoom::most; ++level) {
+    EXPECT_EQ(&levels.update(level, 2e-3, all).structure->factor(), factor[static_cast<std::size_t>(level)]) << level;
+  }
+  levels.update(OperatorRoom::most, 2e-3, all);
+  EXPECT_THROW(static_cast<void>(levels.at(1)), std::out_of_range);  // the farthest from the new one
+}
+
+// Every move makes a factor: one serves both ends.
+TEST(MovingWindow, MovesBothEndsAtOnceByAnEighthOfItsLength) {
+  VsiModel model = sprung_mass();
+  model.vehicle_x = {100.0};
+  model.contact.speed = 40.0;
+  TrackParameters track;
+  track.length_before = 6.0;
+  track.length_after = 600.0;
+  model.structure = share(build_track_bridge(track, {}, MotionPlane::vertical));
+  model.window = make_window(*model.structure, {.kind = Reduction::window, .ahead = 60.0, .behind = 60.0});
+  constexpr double time_step = 5e-3, duration = 8.0, stride = (60.0 + 60.0) / 8.0;
+  MovingWindow window(model, time_step);
+  VsiState state(model);
+  DofRange before = window.move(state);
+  int moves = 0;
+  for (int step = 1; step * time_step <= duration; ++step) {
+    state.time = step * time_step;
+    const DofRange range = window.move(state);
+    EXPECT_EQ(range.begin != before.begin, range.end() != before.end()) << "at " << state.time << " s";
+    if (range != before) ++moves;
+    before = range;
+  }
+  EXPECT_NEAR(moves, model.contact.speed * duration / stride, 1.0);
 }
 
 // Operators that have served an earlier run, here from 3 s before to beyond where the window moves, change no bit of
