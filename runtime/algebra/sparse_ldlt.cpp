@@ -118,30 +118,48 @@ SideBySide<count> loaded(const double* from) noexcept {
   return numbers;
 }
 
+// Of blocks side by side, as bits: those that are meant.
+constexpr unsigned whole_group = ~0U;
+constexpr unsigned bit(int place) noexcept { return 1U << static_cast<unsigned>(place); }
+
+template <int count>
+void set(const SideBySide<count>& numbers, unsigned which, double* to) noexcept {
+  if (which == whole_group) {
+    std::memcpy(to, &numbers, sizeof numbers);
+    return;
+  }
+  for (int b = 0; b < count; ++b) {
+    if ((which & bit(b)) != 0) to[b] = numbers[b];
+  }
+}
+
 /// Of `count` blocks with n columns each side by side: numbers, rows and columns of the first, those of the others
-/// beside them.
+/// beside them. @param which the ones that are meant: they are
+/// computed as with the others, to the bit
 template <int n, int count>
-void forward_side_by_side(const NarrowBlock& block, double* own, double* y) noexcept {
+void forward_side_by_side(const NarrowBlock& block, unsigned which, double* own, double* y) noexcept {
   SideBySide<count> old[n];
   for (int k = 0; k < n; ++k) old[k] = loaded<count>(own + count * k);
   const double* value = block.value;
   for (int j = 1; j < n; ++j) {
     SideBySide<count> sum = old[j];
     for (int k = 0; k < j; ++k, value += count) sum += loaded<count>(value) * old[k];
-    std::memcpy(own + count * j, &sum, sizeof sum);
+    set(sum, which, own + count * j);
   }
   const int* row = block.row;
   for (int i = 0; i < block.below; ++i, row += count) {
     SideBySide<count> change = loaded<count>(value) * old[0];
     value += count;
     for (int k = 1; k < n; ++k, value += count) change += loaded<count>(value) * old[k];
-    for (int b = 0; b < count; ++b) y[row[b]] -= change[b];  // several blocks may have the same row
+    for (int b = 0; b < count; ++b) {  // several blocks may have the same row
+      if (which == whole_group || (which & bit(b)) != 0) y[row[b]] -= change[b];
+    }
   }
 }
 
 template <int n, int count>
-void backward_side_by_side(const NarrowBlock& block, const double* inverse_D, const double* y, double* own,
-                           const double* x) noexcept {
+void backward_side_by_side(const NarrowBlock& block, unsigned which, const double* inverse_D, const double* y,
+                           double* own, const double* x) noexcept {
   SideBySide<count> known[n], solved[n];
   for (int k = 0; k < n; ++k) {
     solved[k] = known[k] = loaded<count>(y + count * k) * loaded<count>(inverse_D + count * k);
@@ -156,38 +174,7 @@ void backward_side_by_side(const NarrowBlock& block, const double* inverse_D, co
   for (int j = 1; j < n; ++j) {
     for (int k = 0; k < j; ++k, value += count) solved[k] += loaded<count>(value) * known[j];
   }
-  for (int k = 0; k < n; ++k) std::memcpy(own + count * k, &solved[k], sizeof solved[k]);
-}
-
-/// One of `count` blocks side by side.
-void forward_one(const NarrowBlock& block, int n, int count, double* own, double* y) noexcept {
-  std::array<double, narrow> old;
-  for (int k = 0; k < n; ++k) old[index(k)] = own[count * k];
-  const double* value = block.value;
-  for (int j = 1; j < n; ++j) {
-    for (int k = 0; k < j; ++k, value += count) own[count * j] += *value * old[index(k)];
-  }
-  for (int i = 0; i < block.below; ++i) {
-    double change = 0.0;
-    for (int k = 0; k < n; ++k, value += count) change += *value * old[index(k)];
-    y[block.row[count * i]] -= change;
-  }
-}
-
-void backward_one(const NarrowBlock& block, int n, int count, const double* inverse_D, const double* y, double* own,
-                  const double* x) noexcept {
-  std::array<double, narrow> known, solved;
-  for (int k = 0; k < n; ++k) solved[index(k)] = known[index(k)] = y[count * k] * inverse_D[count * k];
-  const double* value = block.value + count * (n * (n - 1) / 2);
-  for (int i = 0; i < block.below; ++i) {
-    const double part = x[block.row[count * i]];
-    for (int k = 0; k < n; ++k, value += count) solved[index(k)] -= *value * part;
-  }
-  value = block.value;
-  for (int j = 1; j < n; ++j) {
-    for (int k = 0; k < j; ++k, value += count) solved[index(k)] += *value * known[index(j)];
-  }
-  for (int k = 0; k < n; ++k) own[count * k] = solved[index(k)];
+  for (int k = 0; k < n; ++k) set(solved[k], which, own + count * k);
 }
 
 /// Calls visitor.operator()<columns>(). @pre 1 <= columns <= narrow
@@ -457,7 +444,6 @@ void SparseLdlt::forward(double* y, const Block& block) const {
   double* const own = y + block.first;
   if (block.columns <= narrow) {
     const NarrowBlock numbers = narrow_block(block);
-    if (block.together > 1) return forward_one(numbers, block.columns, block.together, own, y);
     return with_columns(block.columns, [&]<int n>() { forward_narrow<n>(numbers, own, y); });
   }
   const int height = in_fours(block.columns + block.below);
@@ -478,7 +464,6 @@ void SparseLdlt::backward(const double* y, double* x, const Block& block) const 
   const double *const inverse_D = inverse_D_.data() + block.first, *const load = y + block.first;
   if (block.columns <= narrow) {
     const NarrowBlock numbers = narrow_block(block);
-    if (block.together > 1) return backward_one(numbers, block.columns, block.together, inverse_D, load, own, x);
     return with_columns(block.columns, [&]<int n>() { backward_narrow<n>(numbers, inverse_D, load, own, x); });
   }
   const int height = in_fours(block.columns + block.below);
@@ -494,77 +479,80 @@ void SparseLdlt::backward(const double* y, double* x, const Block& block) const 
   for (; k < block.columns; ++k) products<1>(value + k * height, height, k & ~3, scratch, own + k);
 }
 
-void SparseLdlt::forward_together(double* y, const Block& block) const {
+void SparseLdlt::forward_group(double* y, std::size_t first, unsigned which) const {
+  const Block& block = blocks_[first];
   if (block.together == 1) return forward(y, block);
   const NarrowBlock numbers = narrow_block(block);
   double* const own = y + block.first;
   with_columns(block.columns, [&]<int n>() {
-    block.together == 8 ? forward_side_by_side<n, 8>(numbers, own, y) : forward_side_by_side<n, 4>(numbers, own, y);
+    block.together == 8 ? forward_side_by_side<n, 8>(numbers, which, own, y)
+                        : forward_side_by_side<n, 4>(numbers, which, own, y);
   });
 }
 
-void SparseLdlt::backward_together(const double* y, double* x, const Block& block) const {
+void SparseLdlt::backward_group(const double* y, double* x, std::size_t first, unsigned which) const {
+  const Block& block = blocks_[first];
   if (block.together == 1) return backward(y, x, block);
   const NarrowBlock numbers = narrow_block(block);
   const double *const inverse_D = inverse_D_.data() + block.first, *const load = y + block.first;
   double* const own = x + block.first;
   with_columns(block.columns, [&]<int n>() {
-    block.together == 8 ? backward_side_by_side<n, 8>(numbers, inverse_D, load, own, x)
-                        : backward_side_by_side<n, 4>(numbers, inverse_D, load, own, x);
+    block.together == 8 ? backward_side_by_side<n, 8>(numbers, which, inverse_D, load, own, x)
+                        : backward_side_by_side<n, 4>(numbers, which, inverse_D, load, own, x);
   });
 }
 
 void SparseLdlt::forward(double* y) const {
-  for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward_together(y, blocks_[b]);
+  for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward_group(y, b, whole_group);
 }
 
 void SparseLdlt::backward(double* x) const {
   for (std::size_t end = blocks_.size(); end > 0;) {
     end -= index(blocks_[end - 1].together);
-    backward_together(x, x, blocks_[end]);
+    backward_group(x, x, end, whole_group);
   }
 }
 
 void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const {
   // Far from its load a solution decays until it is a denormal number, on which a processor is a hundred times slower.
   constexpr double nothing = 1e-40;
-  for (int b : path.nodes()) {
-    const Block& block = blocks_[static_cast<std::size_t>(b)];
-    bool fades = true;  // not for a NaN, which must reach the solution
-    for (int j = 0; j < block.columns; ++j) fades = fades && std::abs(y[block.column(j)]) < nothing;
-    if (!fades) forward(y.data(), block);
-    for (int j = 0; j < block.columns; ++j) {  // no block after this one reads them
-      const int at = block.column(j);
-      y[at] = fades ? known[at] : y[at] + known[at];
+  const std::span<const int> nodes = path.nodes();
+  for (std::size_t next = 0; next < nodes.size();) {
+    const std::size_t group = first_of_group(nodes[next]), end = group + index(blocks_[group].together), from = next;
+    unsigned alive = 0;
+    for (; next < nodes.size() && index(nodes[next]) < end; ++next) {
+      const Block& block = blocks_[index(nodes[next])];
+      bool fades = true;  // not for a NaN, which must reach the solution
+      for (int j = 0; j < block.columns; ++j) fades = fades && std::abs(y[block.column(j)]) < nothing;
+      if (!fades) alive |= bit(block.place());
+      for (int j = 0; fades && j < block.columns; ++j) y[block.column(j)] = 0.0;
+    }
+    if (alive != 0) forward_group(y.data(), group, alive);
+    for (std::size_t k = from; k < next; ++k) {  // no block after these reads them
+      const Block& block = blocks_[index(nodes[k])];
+      for (int j = 0; j < block.columns; ++j) y[block.column(j)] += known[block.column(j)];
     }
   }
 }
 
 void SparseLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
-  for (auto b = path.nodes().rbegin(); b != path.nodes().rend(); ++b) {
-    backward(y.data(), x.data(), blocks_[static_cast<std::size_t>(*b)]);
+  const std::span<const int> nodes = path.nodes();
+  for (std::size_t end = nodes.size(); end > 0;) {
+    const std::size_t group = first_of_group(nodes[end - 1]);
+    unsigned which = 0;
+    for (; end > 0 && index(nodes[end - 1]) >= group; --end) which |= bit(blocks_[index(nodes[end - 1])].place());
+    backward_group(y.data(), x.data(), group, which);
   }
 }
 
 void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
-  std::array<double, 8 * narrow> solved;  // of blocks on the path
-  const auto for_each_on_path = [&](std::size_t first, auto&& visitor) {
-    double* kept = solved.data();
-    for (std::size_t b = first; b < first + index(blocks_[first].together); ++b) {
-      if (!path.contains(static_cast<int>(b))) continue;
-      for (int j = 0; j < blocks_[b].columns; ++j) visitor(x[blocks_[b].column(j)], *kept++);
-    }
-  };
   for (std::size_t end = blocks_.size(); end > 0;) {
     const int together = blocks_[end - 1].together;
-    const std::size_t first = end - index(together);
-    int on_path = 0;
-    for (std::size_t b = first; b < end; ++b) on_path += path.contains(static_cast<int>(b)) ? 1 : 0;
-    end = first;
-    if (on_path == together) continue;
-    if (on_path > 0) for_each_on_path(first, [](double at, double& kept) { kept = at; });
-    backward_together(y.data(), x.data(), blocks_[first]);
-    if (on_path > 0) for_each_on_path(first, [](double& at, double kept) { at = kept; });
+    const std::size_t group = end - index(together);
+    unsigned off = 0;
+    for (int k = 0; k < together; ++k) off |= path.contains(static_cast<int>(group) + k) ? 0U : bit(k);
+    end = group;
+    if (off != 0) backward_group(y.data(), x.data(), group, off == bit(together) - 1 ? whole_group : off);
   }
 }
 
@@ -572,9 +560,10 @@ Eigen::Map<const Eigen::MatrixXd> SparseLdlt::wide(const Block& block) const {
   return {values_.data() + block.value, in_fours(block.columns + block.below), block.columns};
 }
 
-void SparseLdlt::forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const {
+void SparseLdlt::forward(Eigen::MatrixXd& y, std::size_t first, Eigen::MatrixXd& scratch) const {
+  const Block& block = blocks_[first];
   if (block.columns <= narrow) {
-    for (Eigen::Index k = 0; k < y.cols(); ++k) forward_together(y.col(k).data(), block);
+    for (Eigen::Index k = 0; k < y.cols(); ++k) forward_group(y.col(k).data(), first, whole_group);
     return;
   }
   auto own = y.middleRows(block.first, block.columns);
@@ -585,9 +574,10 @@ void SparseLdlt::forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd
   for (int i = 0; i < block.below; ++i) y.row(row[i]) -= change.row(block.columns + i);
 }
 
-void SparseLdlt::backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const {
+void SparseLdlt::backward(Eigen::MatrixXd& x, std::size_t first, Eigen::MatrixXd& scratch) const {
+  const Block& block = blocks_[first];
   if (block.columns <= narrow) {
-    for (Eigen::Index k = 0; k < x.cols(); ++k) backward_together(x.col(k).data(), x.col(k).data(), block);
+    for (Eigen::Index k = 0; k < x.cols(); ++k) backward_group(x.col(k).data(), x.col(k).data(), first, whole_group);
     return;
   }
   auto own = x.middleRows(block.first, block.columns);
@@ -608,10 +598,10 @@ Eigen::MatrixXd SparseLdlt::solve_columns(const Eigen::MatrixXd& loads) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
       x.row(position_[static_cast<std::size_t>(i)]) = loads.row(first_ + i).segment(first, count);
     }
-    for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward(x, blocks_[b], scratch);
+    for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward(x, b, scratch);
     for (std::size_t end = blocks_.size(); end > 0;) {
       end -= index(blocks_[end - 1].together);
-      backward(x, blocks_[end], scratch);
+      backward(x, end, scratch);
     }
     for (Eigen::Index i = 0; i < size(); ++i) {
       result.row(first_ + i).segment(first, count) = x.row(position_[static_cast<std::size_t>(i)]);

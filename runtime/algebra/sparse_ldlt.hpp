@@ -82,7 +82,12 @@ class SparseLdlt final : public SubstitutionFactor {
     int together;        // blocks side by side: what is theirs stands in turn, a block's own this far apart
 
     [[nodiscard]] int column(int j) const noexcept { return first + together * j; }
+    [[nodiscard]] int place() const noexcept { return first % together; }  // among those side by side
   };
+  [[nodiscard]] std::size_t first_of_group(int block) const noexcept {
+    const auto b = static_cast<std::size_t>(block);
+    return b - static_cast<std::size_t>(blocks_[b].place());
+  }
   [[nodiscard]] NarrowBlock narrow_block(const Block& block) const noexcept;
   std::vector<int> place(const EliminationTree& tree);
   void store(const Block& block, const EliminatedBlock& from);
@@ -90,12 +95,12 @@ class SparseLdlt final : public SubstitutionFactor {
   void forward(double* y, const Block& block) const;
   /// @param y may be x
   void backward(const double* y, double* x, const Block& block) const;
-  /// The same of all blocks side by side with this one, the first of them.
-  void forward_together(double* y, const Block& block) const;
-  void backward_together(const double* y, double* x, const Block& block) const;
-  /// The same for columns of y and x.
-  void forward(Eigen::MatrixXd& y, const Block& block, Eigen::MatrixXd& scratch) const;
-  void backward(Eigen::MatrixXd& x, const Block& block, Eigen::MatrixXd& scratch) const;
+  /// The same of blocks side by side. @param first of them @param which of them are meant, by bits
+  void forward_group(double* y, std::size_t first, unsigned which) const;
+  void backward_group(const double* y, double* x, std::size_t first, unsigned which) const;
+  /// Of all of them, for columns of y and x.
+  void forward(Eigen::MatrixXd& y, std::size_t first, Eigen::MatrixXd& scratch) const;
+  void backward(Eigen::MatrixXd& x, std::size_t first, Eigen::MatrixXd& scratch) const;
   /// T⁻¹ and below it B T⁻¹, of a block that is not narrow.
   [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> wide(const Block& block) const;
 

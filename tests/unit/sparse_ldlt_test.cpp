@@ -5,7 +5,9 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -105,26 +107,55 @@ TEST(SparseLdlt, UnconnectedUnknownsAreBlocksOfTheirOwn) {
   EXPECT_TRUE(factor.solve(Eigen::Vector3d(1.0, 2.0, 3.0)).isApprox(Eigen::Vector3d::Ones(), 1e-15));
 }
 
-// Equal blocks that hang on one: eight and four side by side, and one that is left; all act on the same rows.
-TEST(SparseLdlt, EqualBlocksActOnTheSameRows) {
-  constexpr Eigen::Index blocks = 13, columns = 2, hub = 3, n = blocks * columns + hub;
+/// Equal blocks of neighbouring columns that hang on one: eight and four side by side, and one that is left.
+Eigen::MatrixXd hanging_blocks(Eigen::Index columns) {
+  constexpr Eigen::Index blocks = 13, hub = 3;
+  const Eigen::Index n = blocks * columns + hub;
   Eigen::MatrixXd dense = 20.0 * Eigen::MatrixXd::Identity(n, n);
+  dense.bottomRightCorner<hub, hub>() *= 100.0;
   for (Eigen::Index b = 0; b < blocks; ++b) {
     const Eigen::Index first = columns * b;
-    const double of_block = 1.0 + 0.1 * static_cast<double>(b);
-    dense(first, first + 1) = dense(first + 1, first) = of_block;
-    dense.block<columns, hub>(first, n - hub).setConstant(-of_block);
-    dense.block<hub, columns>(n - hub, first).setConstant(-of_block);
+    const double of_block = std::sqrt(1.0 + static_cast<double>(b));
+    auto own = dense.block(first, first, columns, columns);
+    own.array() += of_block;
+    own.diagonal() += Eigen::VectorXd::LinSpaced(columns, 0.1, 1.0);
+    // What is a row's place in one block's list is not its place in another's.
+    const Eigen::Index row = n - hub + (b < 5 ? 1 : 0);
+    dense.block(row, first, 2, columns).setConstant(-of_block);
+    dense.block(first, row, columns, 2).setConstant(-of_block);
   }
-  const SparseLdlt factor(dense.sparseView());
-  const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(n, -1.0, 2.0);
-  const Eigen::VectorXd expected = dense.llt().solve(load);
-  EXPECT_LT(difference(factor.solve(load), expected), 1e-14);
-  EXPECT_LT(difference(factor.solve_columns(load), expected), 1e-14);
-  // Some of those side by side are on the path, some are not.
-  for (const int unknown : {0, 7, 17, 21, 25}) {
-    expect_divided_as_whole(factor, factor, {{unknown, 9}, {unknown + 1}, {}}, 1e-14);
-    expect_few_as_all(factor, n, {unknown}, {9});
+  return dense;
+}
+
+TEST(SparseLdlt, EqualBlocksActOnTheSameRows) {
+  for (const Eigen::Index columns : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+    const Eigen::MatrixXd dense = hanging_blocks(columns);
+    const SparseLdlt factor(dense.sparseView());
+    const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(dense.rows(), -1.0, 2.0);
+    const Eigen::VectorXd expected = dense.llt().solve(load);
+    EXPECT_LT(difference(factor.solve(load), expected), 1e-14) << columns;
+    EXPECT_LT(difference(factor.solve_columns(load), expected), 1e-14) << columns;
+    // Some of those side by side are on the path, some are not.
+    for (const int block : {0, 3, 8, 10, 12}) {
+      const int unknown = static_cast<int>(columns) * block, other = static_cast<int>(columns) * 4;
+      expect_divided_as_whole(factor, factor, {{unknown, other}, {unknown + 1}, {}}, 1e-14);
+      expect_few_as_all(factor, dense.rows(), {unknown}, {other});
+    }
+  }
+}
+
+// A run that is resumed has other paths than one that is not.
+TEST(SparseLdlt, APathChangesNoBit) {
+  for (const Eigen::Index columns : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    const SparseLdlt factor(hanging_blocks(columns).sparseView());
+    std::vector<int> all(static_cast<std::size_t>(factor.size()));
+    std::iota(all.begin(), all.end(), 0);
+    const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(factor.size(), -1.0, 2.0).array().sin();
+    DividedSubstitution on_path;
+    on_path.begin(factor, Eigen::VectorXd::Zero(factor.size()), {all, {}});
+    Eigen::VectorXd found = Eigen::VectorXd::Zero(factor.size());
+    on_path.respond(factor, 1.0, load, found);
+    EXPECT_EQ(found, factor.solve(load)) << columns;
   }
 }
 
