@@ -118,7 +118,7 @@ SideBySide<count> loaded(const double* from) noexcept {
   return numbers;
 }
 
-// Of blocks side by side, as bits: those that are meant.
+// Which of the blocks side by side are meant: a bit for each.
 constexpr unsigned whole_group = ~0U;
 constexpr unsigned bit(int place) noexcept { return 1U << static_cast<unsigned>(place); }
 
@@ -134,8 +134,7 @@ void set(const SideBySide<count>& numbers, unsigned which, double* to) noexcept 
 }
 
 /// Of `count` blocks with n columns each side by side: numbers, rows and columns of the first, those of the others
-/// beside them. @param which the ones that are meant: they are
-/// computed as with the others, to the bit
+/// beside them. @param which blocks are meant; to the bit, they are computed as with the others
 template <int n, int count>
 void forward_side_by_side(const NarrowBlock& block, unsigned which, double* own, double* y) noexcept {
   SideBySide<count> old[n];

@@ -17,8 +17,8 @@ struct NarrowBlock;
 /// Factor L D Lᵀ of a symmetric positive definite matrix in supernodes: neighbouring columns of equal
 /// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
 /// factor's numbers and works on vectors [Davis2006, Sect. 4.8]. Where a system is long and narrow, paths are short.
-/// Blocks of equal shape of which none waits for another are substituted in side by side, as many as a vector register
-/// holds; the factor's order has their unknowns in turn.
+/// Narrow blocks of equal shape of which none waits for another are substituted in by eights and fours side by side; in
+/// the factor's order their columns stand in turn.
 class SparseLdlt final : public SubstitutionFactor {
  public:
   static constexpr std::string_view not_positive_definite = "the matrix of a linear system is not positive definite";
