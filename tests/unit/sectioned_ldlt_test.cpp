@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "railtab/runtime/algebra/sectioned_product.hpp"
 #include "railtab/runtime/base/dof_indices.hpp"
 #include "railtab/runtime/base/input_error.hpp"
