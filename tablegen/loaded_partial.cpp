@@ -147,7 +147,7 @@ void add_loaded_table(const std::filesystem::path& file, const LoadedSweepOption
   std::optional<ArrayFileWriter> out;
   if (!store.known.empty()) {  // the earlier file itself goes on: at no moment does a kill find fewer columns
     out.emplace(ArrayFileWriter::reopen(partial, filetype, format_version));
-    out->truncate(store.known.size());
+    out->truncate(store.known.size());  // to what was read, should another call have added to it since
   }
   auto flushed = std::chrono::steady_clock::now();
   store.keep = [&](const LoadedSweepColumn& column) {

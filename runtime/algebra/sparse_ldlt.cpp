@@ -17,8 +17,9 @@
 
 namespace railtab {
 
-/// A block's numbers in the order in which its substitution reads them: of a narrow one the strict triangle row by
-/// row, then the rows below; of one by itself four of every column at a time.
+/// A narrow block's numbers in the order in which its substitution reads them: the strict triangle row by row, then the
+/// rows below. A block by itself has both filled up to fours, and of the rows four of every column at a time; of blocks
+/// side by side each number stands beside those of the others.
 struct NarrowBlock {
   const double* value;
   const int* row;
@@ -118,13 +119,19 @@ SideBySide<count> loaded(const double* from) noexcept {
   return numbers;
 }
 
-// Which of the blocks side by side are meant: a bit for each.
+// Which of the blocks side by side are meant: a bit for each. Every bit stands for the group, of whatever size.
 constexpr unsigned whole_group = ~0U;
-constexpr unsigned bit(int place) noexcept { return 1U << static_cast<unsigned>(place); }
+constexpr unsigned bit(int lane) noexcept { return 1U << static_cast<unsigned>(lane); }
+
+template <int count>
+bool is_whole(unsigned which) noexcept {
+  constexpr unsigned every = bit(count) - 1;
+  return (which & every) == every;
+}
 
 template <int count>
 void set(const SideBySide<count>& numbers, unsigned which, double* to) noexcept {
-  if (which == whole_group) {
+  if (is_whole<count>(which)) {
     std::memcpy(to, &numbers, sizeof numbers);
     return;
   }
@@ -151,7 +158,7 @@ void forward_side_by_side(const NarrowBlock& block, unsigned which, double* own,
     value += count;
     for (int k = 1; k < n; ++k, value += count) change += loaded<count>(value) * old[k];
     for (int b = 0; b < count; ++b) {  // several blocks may have the same row
-      if (which == whole_group || (which & bit(b)) != 0) y[row[b]] -= change[b];
+      if ((which & bit(b)) != 0) y[row[b]] -= change[b];
     }
   }
 }
@@ -214,8 +221,8 @@ struct Sequence {
   std::vector<int> together;  ///< of each of them: how many it is taken side by side with
 };
 
-// Blocks in an order in which none waits for the one before it: leaves of the elimination tree first, then what hangs
-// on leaves only, and so on. Of these, equal ones follow each other, narrow ones in eights and fours side by side.
+// Leaves of the elimination tree first, then what hangs on leaves only, and so on: blocks of one height do not wait for
+// each other. Of these, equal ones follow each other, narrow ones in eights and fours side by side.
 Sequence by_height(const EliminationTree& tree) {
   std::vector<int> height(tree.parent.size(), 0);
   Sequence sequence{std::vector<int>(tree.parent.size()), {}};
@@ -312,9 +319,11 @@ std::vector<int> SparseLdlt::place(const EliminationTree& tree) {
   blocks_.resize(tree.parent.size());
   block_of_.resize(index(n));
   int next = 0;
-  for (const int together : {8, 4, 1}) {  // those side by side begin at lines of the cache
+  // Eights begin at lines of the cache, fours at their halves: where a group begins is a multiple of its size (lane()).
+  for (const int together : {8, 4, 1}) {
     for (std::size_t at = 0; at < blocks_.size(); at += index(sequence.together[at])) {
       if (sequence.together[at] != together) continue;
+      assert(next % together == 0);
       const int columns = tree.columns(sequence.block[at]);
       for (int k = 0; k < together; ++k) {
         const std::size_t stored = at + index(k);
@@ -502,14 +511,11 @@ void SparseLdlt::backward_group(const double* y, double* x, std::size_t first, u
 }
 
 void SparseLdlt::forward(double* y) const {
-  for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward_group(y, b, whole_group);
+  visit_groups([&](std::size_t group) { forward_group(y, group, whole_group); });
 }
 
 void SparseLdlt::backward(double* x) const {
-  for (std::size_t end = blocks_.size(); end > 0;) {
-    end -= index(blocks_[end - 1].together);
-    backward_group(x, x, end, whole_group);
-  }
+  visit_groups_from_last([&](std::size_t group) { backward_group(x, x, group, whole_group); });
 }
 
 void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const {
@@ -523,7 +529,7 @@ void SparseLdlt::forward(Vector& y, const Path& path, const Vector& known) const
       const Block& block = blocks_[index(nodes[next])];
       bool fades = true;  // not for a NaN, which must reach the solution
       for (int j = 0; j < block.columns; ++j) fades = fades && std::abs(y[block.column(j)]) < nothing;
-      if (!fades) alive |= bit(block.place());
+      if (!fades) alive |= bit(block.lane());
       for (int j = 0; fades && j < block.columns; ++j) y[block.column(j)] = 0.0;
     }
     if (alive != 0) forward_group(y.data(), group, alive);
@@ -539,20 +545,19 @@ void SparseLdlt::backward(const Vector& y, Vector& x, const Path& path) const {
   for (std::size_t end = nodes.size(); end > 0;) {
     const std::size_t group = first_of_group(nodes[end - 1]);
     unsigned which = 0;
-    for (; end > 0 && index(nodes[end - 1]) >= group; --end) which |= bit(blocks_[index(nodes[end - 1])].place());
+    for (; end > 0 && index(nodes[end - 1]) >= group; --end) which |= bit(blocks_[index(nodes[end - 1])].lane());
     backward_group(y.data(), x.data(), group, which);
   }
 }
 
 void SparseLdlt::backward_off(const Path& path, const Vector& y, Vector& x) const {
-  for (std::size_t end = blocks_.size(); end > 0;) {
-    const int together = blocks_[end - 1].together;
-    const std::size_t group = end - index(together);
+  visit_groups_from_last([&](std::size_t group) {
     unsigned off = 0;
-    for (int k = 0; k < together; ++k) off |= path.contains(static_cast<int>(group) + k) ? 0U : bit(k);
-    end = group;
-    if (off != 0) backward_group(y.data(), x.data(), group, off == bit(together) - 1 ? whole_group : off);
-  }
+    for (int k = 0; k < blocks_[group].together; ++k) {
+      if (!path.contains(static_cast<int>(group) + k)) off |= bit(k);
+    }
+    if (off != 0) backward_group(y.data(), x.data(), group, off);
+  });
 }
 
 Eigen::Map<const Eigen::MatrixXd> SparseLdlt::wide(const Block& block) const {
@@ -589,19 +594,16 @@ void SparseLdlt::backward(Eigen::MatrixXd& x, std::size_t first, Eigen::MatrixXd
 }
 
 Eigen::MatrixXd SparseLdlt::solve_columns(const Eigen::MatrixXd& loads) const {
-  constexpr Eigen::Index together = 16;
+  constexpr Eigen::Index at_once = 16;
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(loads.rows(), loads.cols());
-  for (Eigen::Index first = 0; first < loads.cols(); first += together) {
-    const Eigen::Index count = std::min(together, loads.cols() - first);
+  for (Eigen::Index first = 0; first < loads.cols(); first += at_once) {
+    const Eigen::Index count = std::min(at_once, loads.cols() - first);
     Eigen::MatrixXd x = Eigen::MatrixXd::Zero(size() + 1, count), scratch(most_height_, count);
     for (Eigen::Index i = 0; i < size(); ++i) {
       x.row(position_[static_cast<std::size_t>(i)]) = loads.row(first_ + i).segment(first, count);
     }
-    for (std::size_t b = 0; b < blocks_.size(); b += index(blocks_[b].together)) forward(x, b, scratch);
-    for (std::size_t end = blocks_.size(); end > 0;) {
-      end -= index(blocks_[end - 1].together);
-      backward(x, end, scratch);
-    }
+    visit_groups([&](std::size_t group) { forward(x, group, scratch); });
+    visit_groups_from_last([&](std::size_t group) { backward(x, group, scratch); });
     for (Eigen::Index i = 0; i < size(); ++i) {
       result.row(first_ + i).segment(first, count) = x.row(position_[static_cast<std::size_t>(i)]);
     }

@@ -18,7 +18,7 @@ struct NarrowBlock;
 /// structure are stored as one dense block with one list of rows, so that a substitution reads little more than the
 /// factor's numbers and works on vectors [Davis2006, Sect. 4.8]. Where a system is long and narrow, paths are short.
 /// Narrow blocks of equal shape of which none waits for another are substituted in by eights and fours side by side; in
-/// the factor's order their columns stand in turn.
+/// the factor's order their columns stand in turn. A path reads whole groups of them, and sets what is on it alone.
 class SparseLdlt final : public SubstitutionFactor {
  public:
   static constexpr std::string_view not_positive_definite = "the matrix of a linear system is not positive definite";
@@ -82,11 +82,23 @@ class SparseLdlt final : public SubstitutionFactor {
     int together;        // blocks side by side: what is theirs stands in turn, a block's own this far apart
 
     [[nodiscard]] int column(int j) const noexcept { return first + together * j; }
-    [[nodiscard]] int place() const noexcept { return first % together; }  // among those side by side
+    [[nodiscard]] int lane() const noexcept { return first % together; }  // among those side by side
   };
   [[nodiscard]] std::size_t first_of_group(int block) const noexcept {
     const auto b = static_cast<std::size_t>(block);
-    return b - static_cast<std::size_t>(blocks_[b].place());
+    return b - static_cast<std::size_t>(blocks_[b].lane());
+  }
+  /// Call visitor(first) for every group: blocks side by side, or one by itself.
+  template <class Visitor>
+  void visit_groups(Visitor&& visitor) const {
+    for (std::size_t b = 0; b < blocks_.size(); b += static_cast<std::size_t>(blocks_[b].together)) visitor(b);
+  }
+  template <class Visitor>
+  void visit_groups_from_last(Visitor&& visitor) const {
+    for (std::size_t end = blocks_.size(); end > 0;) {
+      end -= static_cast<std::size_t>(blocks_[end - 1].together);
+      visitor(end);
+    }
   }
   [[nodiscard]] NarrowBlock narrow_block(const Block& block) const noexcept;
   std::vector<int> place(const EliminationTree& tree);
@@ -95,10 +107,10 @@ class SparseLdlt final : public SubstitutionFactor {
   void forward(double* y, const Block& block) const;
   /// @param y may be x
   void backward(const double* y, double* x, const Block& block) const;
-  /// The same of blocks side by side. @param first of them @param which of them are meant, by bits
+  /// The same of a group. @param first of its blocks @param which of them are meant, by bits
   void forward_group(double* y, std::size_t first, unsigned which) const;
   void backward_group(const double* y, double* x, std::size_t first, unsigned which) const;
-  /// Of all of them, for columns of y and x.
+  /// Of a whole group, for columns of y and x.
   void forward(Eigen::MatrixXd& y, std::size_t first, Eigen::MatrixXd& scratch) const;
   void backward(Eigen::MatrixXd& x, std::size_t first, Eigen::MatrixXd& scratch) const;
   /// T⁻¹ and below it B T⁻¹, of a block that is not narrow.

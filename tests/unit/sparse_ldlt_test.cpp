@@ -108,9 +108,10 @@ TEST(SparseLdlt, UnconnectedUnknownsAreBlocksOfTheirOwn) {
   EXPECT_TRUE(factor.solve(Eigen::Vector3d(1.0, 2.0, 3.0)).isApprox(Eigen::Vector3d::Ones(), 1e-15));
 }
 
-/// Equal blocks of neighbouring columns that hang on one: eight and four side by side, and one that is left.
-Eigen::MatrixXd hanging_blocks(Eigen::Index columns) {
-  constexpr Eigen::Index blocks = 13, hub = 3;
+/// Equal blocks of neighbouring columns that hang on others. What they hang on takes in some: different numbers of them
+/// leave eights, fours and single ones.
+Eigen::MatrixXd hanging_blocks(Eigen::Index blocks, Eigen::Index columns) {
+  constexpr Eigen::Index hub = 3;
   const Eigen::Index n = blocks * columns + hub;
   Eigen::MatrixXd dense = 20.0 * Eigen::MatrixXd::Identity(n, n);
   dense.bottomRightCorner<hub, hub>() *= 100.0;
@@ -128,35 +129,41 @@ Eigen::MatrixXd hanging_blocks(Eigen::Index columns) {
   return dense;
 }
 
+constexpr Eigen::Index least_blocks = 5, most_blocks = 22;
+
 TEST(SparseLdlt, EqualBlocksActOnTheSameRows) {
-  for (const Eigen::Index columns : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
-    const Eigen::MatrixXd dense = hanging_blocks(columns);
-    const SparseLdlt factor(dense.sparseView());
-    const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(dense.rows(), -1.0, 2.0);
-    const Eigen::VectorXd expected = dense.llt().solve(load);
-    EXPECT_LT(difference(factor.solve(load), expected), 1e-14) << columns;
-    EXPECT_LT(difference(factor.solve_columns(load), expected), 1e-14) << columns;
-    // Some of those side by side are on the path, some are not.
-    for (const int block : {0, 3, 8, 10, 12}) {
-      const int unknown = static_cast<int>(columns) * block, other = static_cast<int>(columns) * 4;
-      expect_divided_as_whole(factor, factor, {{unknown, other}, {unknown + 1}, {}}, 1e-14);
-      expect_few_as_all(factor, dense.rows(), {unknown}, {other});
+  for (Eigen::Index blocks = least_blocks; blocks <= most_blocks; ++blocks) {
+    for (const Eigen::Index columns : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+      const Eigen::MatrixXd dense = hanging_blocks(blocks, columns);
+      const SparseLdlt factor(dense.sparseView());
+      const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(dense.rows(), -1.0, 2.0);
+      const Eigen::VectorXd expected = dense.llt().solve(load);
+      EXPECT_LT(difference(factor.solve(load), expected), 1e-14) << blocks << ", " << columns;
+      EXPECT_LT(difference(factor.solve_columns(load), expected), 1e-14) << blocks << ", " << columns;
+      // Some of those side by side are on the path, some are not.
+      for (Eigen::Index block = 0; block < blocks; block += 3) {
+        const int unknown = static_cast<int>(columns * block), other = static_cast<int>(columns) * 4;
+        expect_divided_as_whole(factor, factor, {{unknown, other}, {unknown + 1}, {}}, 1e-14);
+        expect_few_as_all(factor, dense.rows(), {unknown}, {other});
+      }
     }
   }
 }
 
 // A run that is resumed has other paths than one that is not.
 TEST(SparseLdlt, APathChangesNoBit) {
-  for (const Eigen::Index columns : {1, 2, 3, 4, 5, 6, 7, 8}) {
-    const SparseLdlt factor(hanging_blocks(columns).sparseView());
-    std::vector<int> all(static_cast<std::size_t>(factor.size()));
-    std::iota(all.begin(), all.end(), 0);
-    const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(factor.size(), -1.0, 2.0).array().sin();
-    DividedSubstitution on_path;
-    on_path.begin(factor, Eigen::VectorXd::Zero(factor.size()), {all, {}});
-    Eigen::VectorXd found = Eigen::VectorXd::Zero(factor.size());
-    on_path.respond(factor, 1.0, load, found);
-    EXPECT_EQ(found, factor.solve(load)) << columns;
+  for (Eigen::Index blocks = least_blocks; blocks <= most_blocks; ++blocks) {
+    for (const Eigen::Index columns : {1, 2, 3, 4, 5, 6, 7, 8}) {
+      const SparseLdlt factor(hanging_blocks(blocks, columns).sparseView());
+      std::vector<int> all(static_cast<std::size_t>(factor.size()));
+      std::iota(all.begin(), all.end(), 0);
+      const Eigen::VectorXd load = Eigen::VectorXd::LinSpaced(factor.size(), -1.0, 2.0).array().sin();
+      DividedSubstitution on_path;
+      on_path.begin(factor, Eigen::VectorXd::Zero(factor.size()), {all, {}});
+      Eigen::VectorXd found = Eigen::VectorXd::Zero(factor.size());
+      on_path.respond(factor, 1.0, load, found);
+      EXPECT_EQ(found, factor.solve(load)) << blocks << ", " << columns;
+    }
   }
 }
 
