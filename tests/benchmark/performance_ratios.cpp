@@ -34,6 +34,7 @@
 #include "railtab/runtime/start/static_equilibrium.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vsi/contact_law.hpp"
+#include "railtab/runtime/vsi/operator_levels.hpp"
 #include "railtab/runtime/vsi/simulation.hpp"
 #include "railtab/tablegen/loaded_sweep.hpp"
 
@@ -178,18 +179,18 @@ double step_to_back_substitution() {
   const VsiModel model = build_model(scene);
   VsiState state(model);
   if (!steady_start(model, state).converged) throw ComputationError("no static equilibrium");
-  const HhtScheme scheme{.alpha = scene.integration.alpha, .time_step = scene.integration.time_step};
-  StepOperators operators(model, scheme);
+  const double time_step = scene.integration.time_step;
+  OperatorLevels levels(model, scene.integration.alpha, time_step);
   StepWorkspace workspace(model);
   const std::unique_ptr<ContactLaw> contacts = make_contact_law(model);
   const DofRange all{0, model.structure->dofs()};
-  const SubstitutionFactor& factor = operators.structure->factor();
+  const SubstitutionFactor& factor = levels.update(0, state.time + time_step, all).structure->factor();
   const Eigen::VectorXd load = Eigen::VectorXd::Ones(model.structure->dofs());
   constexpr int repeated = 20;
   const auto steps = [&] {
     double iterations = 0.0;
     for (int i = 0; i < repeated; ++i) {
-      operators.update_for_time(model, state.time + scheme.time_step, all);
+      const StepOperators& operators = levels.update(0, state.time + time_step, all);
       const StepReport report = advance(model, operators, {}, state, *contacts, workspace);
       if (report.outcome != StepOutcome::accepted) throw ComputationError("a step that does not converge");
       iterations += report.newton_iterations;
