@@ -229,9 +229,11 @@ void add_structure_cases(Cases& cases) {
                      model.structure = share(std::move(structure));
                      return judged(watched_run(model, scene.integration, scene.integration.duration));
                    }});
+  const double element = coach_on_bridge().track.sleeper_spacing;  // one rail element per bay
   for (const double length : {0.2, 0.06}) {
-    cases.push_back({"irregularity shorter than an element", fmt::format("wave of {:g} m on elements of 0.3 m", length),
-                     impulse, 1e-3, Outcome::converged, length < 0.1, [=](double) {
+    cases.push_back({"irregularity shorter than an element",
+                     fmt::format("wave of {:g} m on elements of {:g} m", length, element), impulse, 1e-3,
+                     Outcome::converged, length < 0.1, [=](double) {
                        SceneParameters scene = coach_on_bridge();
                        scene.integration.duration = 0.2;
                        return run_of(scene, wave(length, 5e-5, 8.0));
