@@ -199,6 +199,11 @@ class LoadedTable {
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
+  static constexpr std::size_t buckets = 2048;  ///< of bucket_
+
+  enum Direction : std::size_t;
+  template <class V>
+  struct Lagrange;
   template <class V>
   struct Weights;
   template <bool slopes>

@@ -9,7 +9,7 @@
 
 #include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/vsi/contact_estimate.hpp"
-#include "railtab/runtime/vsi/structure_response.hpp"
+#include "railtab/runtime/vsi/rail_contact.hpp"
 #include "railtab/runtime/vsi/train_contact.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "railtab/runtime/contact/contact_response.hpp"
 #include "railtab/runtime/vsi/hht.hpp"
-#include "railtab/runtime/vsi/structure_response.hpp"
+#include "railtab/runtime/vsi/rail_contact.hpp"
 
 namespace railtab {
 

@@ -25,117 +25,6 @@ SharedStructure not_owned(const StructureModel& structure) { return {SharedStruc
 constexpr const char* not_positive_definite =
     "the structure's effective matrix is not positive definite: check supports and stiffnesses";
 
-}  // namespace
-
-RailContact rail_contact(const StructureModel& structure, RailSide side, double x) noexcept {
-  RailContact contact;
-  contact.side = side;
-  const RailLine& rail = structure.rail[static_cast<std::size_t>(side)];
-  contact.on_rail = contains(rail, x);
-  if (!contact.on_rail) return contact;
-  const RailPlace place = rail_place(rail, x);
-  contact.element = static_cast<int>(place.element);
-  contact.x = x;
-  contact.rows = place.rows;
-  contact.rail = &rail;
-  contact.own = place.own;
-  return contact;
-}
-
-RailHeads rail_heads(std::span<const RailContact> contacts, int wheelset) noexcept {
-  return RailHeads(contacts.subspan(2 * static_cast<std::size_t>(wheelset), 2));
-}
-
-void append_rail_heads(const StructureModel& structure, double x, std::vector<RailContact>& contacts) {
-  const RailContact& left = contacts.emplace_back(rail_contact(structure, RailSide::left, x));
-  const RailLine& rail = structure.rail[static_cast<std::size_t>(RailSide::right)];
-  const auto node = static_cast<std::size_t>(left.element);
-  if (!left.on_rail || node + 1 >= rail.x.size() || !same_element(*left.rail, rail, node)) {
-    contacts.push_back(rail_contact(structure, RailSide::right, x));
-    return;
-  }
-  RailContact& right = contacts.emplace_back(left);
-  right.side = RailSide::right;
-  right.rail = &rail;
-  right.rows.dof = element_dofs(rail, node);
-}
-
-Eigen::Matrix3d element_compliance(const RailContact& i, const RailContact& j) noexcept {
-  if (!i.on_rail || !j.on_rail || i.side != j.side || i.element != j.element) return Eigen::Matrix3d::Zero();
-  return i.x == j.x ? j.own.compliance : element_compliance(*j.rail, i.x, j.x);
-}
-
-void add_element_compliance(RailHeads i, RailHeads j, double weight, RailHeadsCompliance& compliance) noexcept {
-  for (std::size_t side = 0; side < 2; ++side) {
-    const auto first = static_cast<Eigen::Index>(3 * side);
-    compliance.block<3, 3>(first, first) += weight * element_compliance(i[side], j[side]);
-  }
-}
-
-namespace {
-
-void append_free(std::span<const int> from, std::vector<int>& dofs) {
-  for (int dof : from) {
-    if (dof != held) dofs.push_back(dof);
-  }
-}
-
-}  // namespace
-
-void append_dofs(const RailContact& contact, std::vector<int>& dofs) {
-  if (contact.on_rail) append_free(contact.rows.dof, dofs);
-}
-
-void append_dofs_ahead(const RailContact& contact, std::vector<int>& dofs) {
-  if (!contact.on_rail) return;
-  const auto node = static_cast<std::size_t>(contact.element + 2);
-  if (node < contact.rail->x.size()) append_free(head_dofs(*contact.rail, node), dofs);
-}
-
-namespace {
-
-// A node's unknowns in the order of an element's. Of the rows y, z and roll only these entries are not zero
-// (rail_interpolation): y has the node's y and yaw and, times the head's height, what roll has; z its z and pitch; roll
-// its roll and twist rate.
-enum HeadDof : std::size_t { twist, y, z, roll, pitch, yaw, of_node };
-
-}  // namespace
-
-Eigen::Vector3d rail_head(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
-  Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  if (!contact.on_rail) return value;
-  const RailInterpolation& rows = contact.rows;
-  for (std::size_t p = 0; p < rows.dof.size(); p += of_node) {
-    const auto at = [&](HeadDof k) { return rows.dof[p + k] == held ? 0.0 : dofs[rows.dof[p + k]]; };
-    value[0] += rows.y[p + y] * at(y) + rows.y[p + yaw] * at(yaw);
-    value[1] += rows.z[p + z] * at(z) + rows.z[p + pitch] * at(pitch);
-    value[2] += rows.roll[p + roll] * at(roll) + rows.roll[p + twist] * at(twist);
-  }
-  value[0] += contact.rail->head_height * value[2];
-  return value;
-}
-
-Eigen::Vector2d rail_slopes(const RailContact& contact, const Eigen::VectorXd& dofs) noexcept {
-  Eigen::Vector2d value = Eigen::Vector2d::Zero();
-  if (!contact.on_rail) return value;
-  for (std::size_t k = 0; k < 12; ++k) {
-    if (contact.rows.dof[k] == held) continue;
-    value += dofs[contact.rows.dof[k]] * Eigen::Vector2d(contact.rows.yaw[k], contact.rows.pitch[k]);
-  }
-  return value;
-}
-
-void add_rail_load(const RailContact& contact, const Eigen::Vector3d& load, Eigen::VectorXd& loads) noexcept {
-  if (!contact.on_rail) return;
-  for (std::size_t k = 0; k < 12; ++k) {
-    if (contact.rows.dof[k] == held) continue;
-    loads[contact.rows.dof[k]] +=
-        contact.rows.y[k] * load[0] + contact.rows.z[k] * load[1] + contact.rows.roll[k] * load[2];
-  }
-}
-
-namespace {
-
 // The compliance of (y, z, roll) of rail heads on a symmetric structure seen in a mirror along the track.
 Eigen::Matrix3d mirrored(const Eigen::Matrix3d& compliance) {
   Eigen::Matrix3d result = compliance;
@@ -509,8 +398,8 @@ StructureResponse::Column StructureResponse::column_of(double reach, std::size_t
   FewEntries& s = *few_;
   Column column;
   std::vector<int> involved;
-  const DofIndices of_node = head_dofs(rail, node);
-  append_free(of_node, involved);
+  const DofIndices unknowns = head_dofs(rail, node);
+  append_free(unknowns, involved);
   for (std::size_t other = 0; other < 2; ++other) {
     const RailLine& to = structure_->rail[other];
     const auto begin = std::lower_bound(to.x.begin(), to.x.end(), rail.x[node] - reach) - to.x.begin();
@@ -522,7 +411,7 @@ StructureResponse::Column StructureResponse::column_of(double reach, std::size_t
   }
   s.solution.begin(factor, {involved, {}});
   for (std::size_t load = 0; load < 6; ++load) {
-    const int loaded = of_node[load];
+    const int loaded = unknowns[load];
     if (loaded == held) continue;
     s.load[loaded] = 1.0;
     const Eigen::VectorXd& moved = s.respond(factor);
@@ -613,11 +502,15 @@ struct HeadWeights {
   HeadWeights(const RailInterpolation& r, std::size_t node) noexcept
       : first{r.roll[node + twist], r.y[node + y], r.z[node + z], r.roll[node + roll]},
         last{0.0, 0.0, r.z[node + pitch], r.y[node + yaw]} {}
+
+ private:
+  using enum HeadDof::Place;
 };
 
 }  // namespace
 
 Eigen::Matrix3d StructureResponse::compliance(const RailContact& i, const RailContact& j) const noexcept {
+  using enum HeadDof::Place;
   if (!i.on_rail || !j.on_rail) return Eigen::Matrix3d::Zero();
   NodeMotion node[2][3];  // of i, under unit loads y, z and roll on rail head j
   visit_blocks(i, j, [&](const Block& block, std::size_t p, std::size_t q) {

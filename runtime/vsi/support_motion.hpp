@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "railtab/runtime/line/ground_motion.hpp"
-#include "railtab/runtime/vsi/structure_response.hpp"
+#include "railtab/runtime/vsi/rail_contact.hpp"
 
 namespace railtab {
 

@@ -8,7 +8,7 @@
 #include "railtab/runtime/structure/stiffness_factor.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vehicle/vehicle_library.hpp"
-#include "railtab/runtime/vsi/structure_response.hpp"
+#include "railtab/runtime/vsi/rail_contact.hpp"
 #include "railtab/runtime/vsi/vehicle_response.hpp"
 
 namespace railtab {

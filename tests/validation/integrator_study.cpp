@@ -23,7 +23,7 @@
 #include "railtab/runtime/structure/structure_model.hpp"
 #include "railtab/runtime/structure/track_bridge.hpp"
 #include "railtab/runtime/vsi/hht.hpp"
-#include "railtab/runtime/vsi/structure_response.hpp"
+#include "railtab/runtime/vsi/rail_contact.hpp"
 
 namespace railtab {
 namespace {
