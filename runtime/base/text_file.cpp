@@ -97,11 +97,18 @@ void require_replaceable_text(const std::filesystem::path& file, std::string_vie
   const std::string head = beginning(target, std::max(mark.size(), enough));
   if (head.starts_with(mark)) return;
   const bool binary = head.find('\0') != std::string::npos;
+  // texts in JSON differ after their first line
+  const bool begins_alike = first_line(head) == first_line(mark);
+  const auto shown = [&](std::string_view text) {
+    std::string begin((begins_alike ? text.substr(0, mark.size()) : first_line(text)).substr(0, 140));
+    std::ranges::replace(begin, '\n', ' ');
+    return begin;
+  };
   const std::string found =
-      binary ? "a table or results of railtab, or HDF5" : "a file that begins with " + quoted(first_line(head));
+      binary ? "a table or results of railtab, or HDF5" : "a file that begins with " + railtab::quoted(shown(head));
   throw input_error(file.string(), found,
                     fmt::format("a new name, or an earlier output of this kind to replace, which begins with '{}'",
-                                printable(first_line(mark).substr(0, 140))));
+                                printable(shown(mark))));
 }
 
 void write_text_file(const std::filesystem::path& file, std::string_view text, std::string_view mark) {

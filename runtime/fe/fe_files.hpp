@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct FeRow {
 struct FeMesh {
   std::map<int, Eigen::Vector3d> nodes;
   std::map<std::string, std::vector<int>> sets;
-  std::string turned{};  ///< "file:line" of the first *TRANSFORM, axes of nodes; empty: none
+  std::optional<std::size_t> elements{};  ///< number that an input deck defines; a table has none
+  std::string turned{};                   ///< "file:line" of the first *TRANSFORM, axes of nodes; empty: none
 };
 
 /// A real sparse matrix in Matrix Market's coordinate format, `general` or `symmetric`; entries of the same place add

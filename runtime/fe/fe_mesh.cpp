@@ -57,6 +57,8 @@ class DeckReader {
         node(reader, line);
       } else if (block_ == Block::set) {
         members(reader, line);
+      } else if (block_ == Block::element) {
+        element(line);
       } else if (block_ == Block::instance) {
         instance(reader, line);
       }
@@ -64,7 +66,7 @@ class DeckReader {
   }
 
  private:
-  enum class Block { other, node, set, instance };
+  enum class Block { other, node, set, element, instance };
 
   void start(const LineReader& reader, const Keyword& keyword, const std::filesystem::path& file, int depth) {
     block_ = Block::other;
@@ -84,6 +86,9 @@ class DeckReader {
       block_ = Block::set;
       set_ = &mesh_.sets[upper_case(name->second)];
       generate_ = keyword.parameters.contains("GENERATE");
+    } else if (keyword.name == "ELEMENT") {
+      block_ = Block::element;
+      element_goes_on_ = false;
     } else if (keyword.name == "INSTANCE") {
       block_ = Block::instance;
     } else if (keyword.name == "TRANSFORM") {
@@ -109,6 +114,12 @@ class DeckReader {
     }
     add_node(reader, number, position, mesh_);
     if (set_) set_->push_back(number);
+  }
+
+  /// An element with many nodes goes on after a line that ends with a comma.
+  void element(std::string_view line) {
+    if (!element_goes_on_) ++*mesh_.elements;
+    element_goes_on_ = line.ends_with(',');
   }
 
   /// Abaqus's shift and turn of a part in its assembly.
@@ -164,7 +175,7 @@ class DeckReader {
   std::size_t members_ = 0;  // of all sets
   Block block_ = Block::other;
   std::vector<int>* set_ = nullptr;
-  bool generate_ = false;
+  bool generate_ = false, element_goes_on_ = false;
 };
 
 void read_table(LineReader& reader, FeMesh& mesh) {
@@ -198,6 +209,7 @@ FeMesh read_fe_mesh(const std::filesystem::path& file) {
     const std::string_view line = stripped(reader.line());
     if (line.empty() || line.front() == '#' || line.front() == '!' || line.front() == '%') continue;
     if (line.front() == '*') {
+      mesh.elements = 0;
       DeckReader(mesh).read(file, 0);
     } else {
       read_table(reader, mesh);

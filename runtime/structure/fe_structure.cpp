@@ -60,6 +60,21 @@ bool is_inner(const FeRow& row, FeFormat format, int last_node) {
   return (format == FeFormat::calculix && row.node > last_node) || (format == FeFormat::abaqus && row.node < 0);
 }
 
+/// A deck that is cut off within its nodes would make inner modes of those that it lacks.
+void check_inner_nodes(const FeFiles& files, const FeMesh& mesh, const std::vector<FeRow>& rows, int last_node) {
+  constexpr std::size_t of_element = 3;
+  if (!mesh.elements) return;  // a table of nodes
+  std::set<int> inner;
+  for (const FeRow& row : rows) {
+    if (is_inner(row, FeFormat::calculix, last_node)) inner.insert(row.node);
+  }
+  if (inner.size() <= of_element * *mesh.elements) return;
+  throw input_error(files.nodes.string(),
+                    fmt::format("nodes up to {} and {} elements, while {} has rows of {} further nodes", last_node,
+                                *mesh.elements, files.dofs.string(), inner.size()),
+                    "the whole input deck: CalculiX adds three nodes at most to an element, for its inner modes");
+}
+
 std::string row_text(const FeStructure& structure, Eigen::Index row) {
   const auto r = static_cast<std::size_t>(row);
   return fmt::format("row {} (node {}, railtab's {})", row + 1, structure.node_of_row[r],
@@ -113,6 +128,7 @@ FeStructure read_fe_structure(const FeFiles& files, const FeFrame& frame) {
 
   for (const auto& [node, position] : s.mesh.nodes) s.nodes[node].position = conversion.position(position);
   const int last_node = s.mesh.nodes.rbegin()->first;
+  if (files.format == FeFormat::calculix) check_inner_nodes(files, s.mesh, reading.rows, last_node);
   Eigen::VectorXd to_model(n);
   for (int r = 0; r < n; ++r) {
     const FeRow& row = reading.rows[static_cast<std::size_t>(r)];

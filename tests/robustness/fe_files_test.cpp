@@ -249,16 +249,18 @@ TEST_F(FeFilesTest, MeshesOfDecksAndTables) {
   const FeMesh deck = read_fe_mesh(write("deck.inp",
                                          "** a deck\n*HEADING\n1, 2, 3 are no nodes\n*Node, Nset=All\n"
                                          "1, 0., 1., 2.\n2, 5., 1., -2.e0\n*INCLUDE, INPUT=more.inp\n"
-                                         "*ELEMENT, TYPE=B31\n1, 1, 2\n*NSET, NSET=ends\n1,\n3\n"
+                                         "*ELEMENT, TYPE=B31\n1, 1, 2\n2, 2,\n3\n*NSET, NSET=ends\n1,\n3\n"
                                          "*nset, nset=Run, GENERATE\n1, 3, 2\n*NSET,NSET=BOTH\nENDS, 2\n"));
   ASSERT_EQ(deck.nodes.size(), 3u);
   EXPECT_EQ(deck.nodes.at(2), Eigen::Vector3d(5, 1, -2));
   EXPECT_EQ(deck.nodes.at(3), Eigen::Vector3d(7.5, 0, 0));
+  EXPECT_EQ(deck.elements, 2u) << "one of them on two lines";
   EXPECT_EQ(deck.sets.at("ALL"), (std::vector<int>{1, 2}));
   EXPECT_EQ(deck.sets.at("RUN"), (std::vector<int>{1, 3}));
   EXPECT_EQ(deck.sets.at("BOTH"), (std::vector<int>{1, 3, 2}));
   const FeMesh table = read_fe_mesh(write("nodes.txt", "! from NWRITE\n 1\n 2  0.5  0.  0.25\n 3,1,2,3\n"));
   ASSERT_EQ(table.nodes.size(), 3u);
+  EXPECT_FALSE(table.elements);
   EXPECT_EQ(table.nodes.at(1), Eigen::Vector3d::Zero());
   EXPECT_EQ(table.nodes.at(2), Eigen::Vector3d(0.5, 0, 0.25));
   EXPECT_TRUE(message(read_fe_mesh, "1 0 0 0\n1 1 0 0\n").starts_with("f:2: found node 1 again"));

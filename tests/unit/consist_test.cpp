@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "../folder_fixture.hpp"
 #include "railtab/runtime/base/input_error.hpp"
 #include "railtab/runtime/scene/result_header.hpp"
 #include "railtab/runtime/scene/run_plan.hpp"
 #include "railtab/runtime/scene/scene_model.hpp"
+#include "railtab/runtime/structure/lowest_modes.hpp"
 #include "railtab/runtime/vehicle/joint_file.hpp"
 #include "railtab/runtime/vehicle/separate_systems.hpp"
 #include "railtab/runtime/vehicle/static_wheel_load.hpp"
@@ -70,6 +73,14 @@ TEST(Consist, JointsAreAmongTheFilesOfAScene) {
   std::ranges::sort(names);
   EXPECT_EQ(names, (std::vector<std::string>{"coach.toml", "coupler.toml", "end-coach.toml", "jacobs-bogie.toml",
                                              "power-car.toml"}));
+}
+
+/// As the head of docs/examples/articulated.toml says: bogies pass at the span's first natural frequency.
+TEST(Consist, TheArticulatedExampleCrossesItsSpanAtResonance) {
+  const VsiModel model = build_model(read_scene(RAILTAB_SOURCE_DIR "/docs/examples/articulated.toml"));
+  constexpr double bogie_distance = 18.7;  // m
+  const double omega = std::sqrt(lowest_modes(model.structure->stiffness, model.structure->mass, 1).omega2[0]);
+  EXPECT_NEAR(model.contact.speed, bogie_distance * omega / (2.0 * std::numbers::pi), 0.005 * model.contact.speed);
 }
 
 /// Wheels of docs/examples/eurostar.toml carry the shares of their coaches by the law of the lever, with bogies and

@@ -233,6 +233,24 @@ TEST_F(SolidBeam, SectionForcesAreThoseOfStatics) {
   EXPECT_THROW(static_cast<void>(read_on_supports(parameters)), InputError) << "elements at the constraint";
 }
 
+// A deck that is cut off within its nodes: the rows of those that it lacks are no inner modes.
+TEST_F(SolidBeam, ADeckThatIsCutOffWithinItsNodesIsRejected) {
+  RAILTAB_NEEDS_CALCULIX();
+  const ImportParameters parameters = written();
+  std::ifstream whole(folder_ / "solid.inp");
+  std::string cut, line;
+  for (int lines = 0; lines < 100 && std::getline(whole, line); ++lines) cut += line + "\n";
+  std::ofstream(folder_ / "solid.inp") << cut;
+  try {
+    static_cast<void>(read_fe_structure(parameters.files, {}));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& wrong) {
+    const std::string message = wrong.what();
+    EXPECT_NE(message.find("solid.inp: found nodes up to 99 and 0 elements"), std::string::npos) << message;
+    EXPECT_NE(message.find("the whole input deck"), std::string::npos) << message;
+  }
+}
+
 void expect_same_bits(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double>& b) {
   ASSERT_TRUE(a.isCompressed() && b.isCompressed());
   ASSERT_EQ(a.rows(), b.rows());

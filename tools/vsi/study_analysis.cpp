@@ -24,8 +24,8 @@ double measure_of(const StudyPlan& plan, const StudyRow& row, const std::string&
   const std::optional<double> value = row.measures[measure_index(plan)];
   if (value) return *value;
   throw ComputationError(fmt::format(
-      "run {} has no {}: vsi assess of the scene says why (no lateral forces, records too far apart, an end "
-      "before anything is judged)",
+      "run {} has no {}: vsi assess of the scene says why (no lateral forces, time steps or records too far apart for "
+      "its low-pass, an end before anything is judged)",
       run, plan.measure));
 }
 
