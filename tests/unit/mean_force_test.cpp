@@ -44,8 +44,8 @@ TEST(EquivalentDescent, ChangesTheEnergyOfPatchesAsAMotionDoes) {
   for (const double y : {0.0, 4.6e-3, 5.5e-3}) {
     const WheelsetPose from{y, 0.32e-3, 1e-3, 1e-3};
     const WheelContact contact = wheel_contact(*chain.geometry, from);
-    const LoadedWheelForce force = wheel_force(chain.model, WheelSide::right,
-                                               {Vector6{0, from.y, from.z, from.roll, 0, from.yaw}, {}}, {}, contact);
+    const LoadedWheelForce force = wheel_force(
+        chain.model, WheelSide::right, {.displacement = {0, from.y, from.z, from.roll, 0, from.yaw}}, {}, contact);
     const ContactMemory memory = contact_memory(chain.geometry->pair(), contact, force);
     const auto energy = [&](const WheelsetPose& pose) {
       const ContactPatches patches = chain.geometry->patches(pose);
